@@ -1,0 +1,78 @@
+// What the compiler knows about one object and the runtime uses: the content of a database, as plain structs.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/density.h"
+#include "common/region_attributes.h"
+#include "common/relation_attributes.h"
+#include "common/segmentation.h"
+#include "common/sensor_model.h"
+
+namespace foresight {
+
+inline constexpr int kAspectCells = 80;  // Section V.A
+
+// One planar face of the CAD model, in the model frame.
+struct ModelFace {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    // unit, outward
+  double offset = 0.0;                                 // normal . p = offset. Unit: mm.
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the whole face. Unit: mm.
+  double area = 0.0;                                   // Unit: mm^2.
+  int views_found = 0;                                 // sample views in which extraction found it: P(M) before normalisation
+  std::array<Density, kAttributeCount> densities;      // P(f^k|M), empty when views_found == 0
+};
+
+// P(f|M_l, M_m) of two faces seen together; first < second.
+struct FacePair {
+  int first = 0;
+  int second = 0;
+  int views_found = 0;
+  std::array<Density, kRelationCount> densities;
+};
+
+struct TemplatePoint {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  // model frame. Unit: mm.
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    // of the first face in the list
+  std::vector<int> faces;                              // faces the point belongs to, ascending; an edge point has two or more
+  std::vector<int> neighbours;                         // N_i of Section V.C, ascending
+};
+
+// The 3DTM model of Section V.A.
+struct SurfaceTemplate {
+  double spacing = 5.0;                                          // no two points are nearer than this. Unit: mm.
+  std::vector<TemplatePoint> points;
+  std::array<std::vector<int>, kAspectCells> aspects;            // faces visible from each cell of ViewingSphere(80), ascending
+};
+
+// One object, ready for recognition.
+struct CompiledModel {
+  std::string name;
+  std::string cad_file;                                 // name of the CAD file without its folder
+  std::string cad_sha256;                               // hex digest of its bytes
+  std::string cad_unit = "mm";
+  double diameter = 0.0;                                // largest distance between two vertices. Unit: mm.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();     // of the bounding box, model frame. Unit: mm.
+  int views = 0;                                        // number of sample views
+  std::vector<ModelFace> faces;
+  std::vector<FacePair> pairs;                          // ascending by (first, second)
+  SurfaceTemplate surface;
+  std::vector<Eigen::Vector3f> vertices;                // of the CAD mesh, for overlays and for pose distances. Unit: mm.
+  std::vector<std::array<int, 3>> triangles;            // indices into vertices
+};
+
+// A database is compiled models that share a sensor and extraction settings.
+struct CompiledDatabase {
+  std::string tool_version;
+  std::string ray_isa;                                  // instruction set the rays were cast with
+  SensorModel sensor;
+  SegmentationOptions segmentation;
+  DensityOptions density;
+  std::vector<CompiledModel> models;
+};
+
+}  // namespace foresight

@@ -1,0 +1,1 @@
+#include "common/region_attributes.h"

@@ -1,0 +1,1 @@
+#include "common/relation_attributes.h"

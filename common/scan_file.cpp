@@ -1,0 +1,1 @@
+#include "common/scan_file.h"

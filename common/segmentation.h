@@ -1,0 +1,45 @@
+// Feature extraction: planar regions by best-first region growing. Compiler and runtime run this very code with the very
+// same options, because a prior is a statistic *of the feature extractor* (Section III).
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/range_image.h"
+#include "common/sensor_model.h"
+
+namespace foresight {
+
+struct SegmentationOptions {
+  double plane_sigma = 0.1;          // standard deviation of a data point about its plane. Unit: mm. Limit: > 0.
+  double merge_tolerance = 1.5;      // two patches are one plane while the rms of their common fit is below this many plane_sigma. Limit: > 1.
+  double grow_tolerance = 3.0;       // a cell joins a region within this many plane_sigma of its plane. Limit: > 1.
+  int seed_block = 3;                // side of the square patches growing starts from. Unit: cells. Limit: 2 to 16.
+  int smallest_region = 12;          // regions of fewer cells are dropped. Unit: cells. Limit: >= 3.
+  double largest_depth_step = 4.0;   // neighbouring cells farther apart than this, in units of the cell spacing, are not connected. Limit: > 1.
+};
+
+bool operator==(const SegmentationOptions& a, const SegmentationOptions& b);
+
+// Throws UsageError when a field is outside its limits.
+void check(const SegmentationOptions& options);
+
+// The one setting per sensor: every option follows from the sensor's noise, quantization and resolution.
+[[nodiscard]] SegmentationOptions segmentation_options_for(const SensorModel& sensor);
+
+// A planar patch of the image.
+struct Region {
+  std::vector<int> cells;                                   // ascending cell indices
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();         // unit, towards the sensor
+  double offset = 0.0;                                      // normal . p = offset for p on the plane. Unit: mm. Negative: the sensor is in front.
+  double rms = 0.0;                                         // root mean square distance of the data points. Unit: mm.
+};
+
+// Deterministic; regions ordered by size, largest first (ties: lowest first cell).
+[[nodiscard]] std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& options);
+
+// 0 = no region, i + 1 = regions[i]. Size: image cells.
+[[nodiscard]] std::vector<int> label_image(const std::vector<Region>& regions, int cells);
+
+}  // namespace foresight

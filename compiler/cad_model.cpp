@@ -1,0 +1,1 @@
+#include "compiler/cad_model.h"

@@ -1,0 +1,33 @@
+// The compiler's order of stages: CAD -> views -> regions -> samples -> statistics, and the surface template beside them.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/compiled_model.h"
+#include "compiler/cad_model.h"
+#include "compiler/face_samples.h"
+#include "compiler/surface_template.h"
+
+namespace foresight {
+
+struct CompileOptions {
+  FaceSampleOptions samples;
+  DensityOptions density;
+  SurfaceTemplateOptions surface;    // its distance is overridden by the sensor's working distance
+};
+
+// Statistics and template of one model. progress(done) counts views; may be called from any thread.
+[[nodiscard]] CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, const CompileOptions& options,
+                                          const std::function<void(int)>& progress = {});
+
+// An empty database for a sensor: provenance, extraction and density settings in place.
+[[nodiscard]] CompiledDatabase new_database(const SensorModel& sensor, const CompileOptions& options);
+
+// Joins databases compiled apart, models in the order given. Throws DatabaseError{incompatible} naming the file when
+// sensors or settings differ, or when two models have one name.
+struct NamedDatabase { std::string file; CompiledDatabase database; };
+[[nodiscard]] CompiledDatabase link_databases(std::vector<NamedDatabase> parts);
+
+}  // namespace foresight

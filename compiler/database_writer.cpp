@@ -1,0 +1,1 @@
+#include "compiler/database_writer.h"

@@ -1,0 +1,1 @@
+#include "compiler/face_samples.h"

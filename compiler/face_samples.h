@@ -1,0 +1,48 @@
+// Sample values of region attributes for each face of a model over many simulated views (Section III, Fig. 1).
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "common/region_attributes.h"
+#include "common/relation_attributes.h"
+#include "common/sensor_model.h"
+#include "compiler/cad_model.h"
+#include "compiler/sensor_simulator.h"
+
+namespace foresight {
+
+// A region paired with the face most of its cells show, by the simulator's labels.
+struct RegionFace {
+  int region = 0;
+  int face = 0;
+};
+
+// Regions of which no face holds at least `smallest_share` of the cells are paired with none.
+[[nodiscard]] std::vector<RegionFace> pair_regions_with_faces(const std::vector<DescribedRegion>& regions,
+                                                              const std::vector<CellLabel>& labels,
+                                                              double smallest_share = 0.5);
+
+struct FaceSampleOptions {
+  int views = 320;             // of ViewingSphere. Limit: 20*4^k.
+  std::uint64_t seed = 1;      // of noise, distance and roll; view i uses its own stream
+};
+
+// What one view shows.
+struct ViewSample {
+  struct FaceObservation { int face; AttributeVector attributes; };
+  struct PairObservation { int first; int second; RelationVector relations; };  // first < second
+  std::vector<FaceObservation> faces;
+  std::vector<PairObservation> pairs;
+};
+
+// All views of one model, in view order whatever the number of threads. progress(done) may be called from any thread.
+[[nodiscard]] std::vector<ViewSample> sample_views(const CadModel& model, const SensorModel& sensor,
+                                                   const SegmentationOptions& segmentation,
+                                                   const FaceSampleOptions& options,
+                                                   const std::function<void(int)>& progress = {});
+
+}  // namespace foresight

@@ -1,0 +1,1 @@
+#include "compiler/scene_generator.h"

@@ -1,0 +1,1 @@
+#include "compiler/sensor_file.h"

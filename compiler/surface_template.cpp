@@ -1,0 +1,1 @@
+#include "compiler/surface_template.h"

@@ -1,0 +1,104 @@
+// Foresight's public interface: load a compiled database once, recognize its objects in range images.
+//
+// Needs nothing but the C++ standard library to include. Link foresight_runtime.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace foresight {
+
+class Database;
+
+// A range image in the caller's memory. Sensor frame: x right, y down, z forward. Unit: mm.
+struct RangeImageView {
+  int rows = 0;                 // Limit: 32 to 4096.
+  int columns = 0;              // Limit: 32 to 4096.
+  const float* xyz = nullptr;   // rows*columns*3 values, row by row; an invalid cell has NaN in all three
+};
+
+// One recognized object.
+struct Detection {
+  std::string object;                      // name of the compiled model
+  std::array<double, 16> T_sensor_model{}; // row-major; takes model points (mm) into the sensor frame (mm)
+  double score = 0.0;                      // 0 to 1; the paper's method: the matched fraction
+  double matched = 0.0;                    // alpha, Section V.C
+  double coherent = 0.0;                   // beta
+  double occluding = 0.0;                  // gamma
+  int rank = 0;                            // place of its hypothesis in the ordered list, from 1
+  std::vector<int> faces;                  // faces of the hypothesis, and
+  std::vector<int> regions;                // the regions they were matched with (Fig. 9's first column counts regions)
+};
+
+// Columns of the paper's Fig. 9, and the count of eq. (9) evaluations (Table I's cost).
+struct Statistics {
+  int regions = 0;
+  long possible_matches = 0;
+  long threshold_matches = 0;
+  long active_matches = 0;
+  long hypotheses = 0;
+  long verifications = 0;
+  long energy_evaluations = 0;
+};
+
+// Time of each stage. Unit: ms.
+struct StageTimes {
+  double extract = 0.0;
+  double field = 0.0;       // likelihoods, field and highest confidence first
+  double hypotheses = 0.0;
+  double localize = 0.0;
+  double verify = 0.0;
+  double total = 0.0;
+};
+
+struct RecognitionResult {
+  bool complete = true;                 // false: the deadline came first, detections are those found until then
+  std::vector<Detection> detections;    // in the order found
+  Statistics statistics;
+  StageTimes milliseconds;
+};
+
+enum class Loss { lorentzian, tukey, huber, gaussian };      // rho of Section V.B
+enum class PriorSign { minus_log, plus_log_as_printed };     // 1-clique potential; the paper prints +log P(M), eq. (3) wants -log
+enum class Pruning { highest_confidence_first, none };       // none: every match above zero stays active
+
+struct RecognizeOptions {
+  PriorSign prior_sign = PriorSign::minus_log;
+  Pruning pruning = Pruning::highest_confidence_first;
+  Loss loss = Loss::lorentzian;
+  double smallest_matched = 0.5;        // alpha, Section V.C. Limit: 0 to 1.
+  double smallest_coherent = 0.4;       // beta, Section V.C. Limit: 0 to 1.
+  double largest_occluding = 0.175;     // gamma, Section V.C. Limit: 0 to 1.
+  int most_detections = 0;              // stop after this many, 0 = no limit. Limit: >= 0.
+  int most_verifications = 0;           // stop after this many, 0 = no limit. Limit: >= 0.
+};
+
+// Recognizes the objects of one database. Const methods may be called from several threads.
+class Recognizer {
+ public:
+  // Throws DatabaseError or InputError (common/errors.h) when the file cannot be used, UsageError for options outside their limits.
+  explicit Recognizer(const std::string& database_file, const RecognizeOptions& options = {});
+  ~Recognizer();
+  Recognizer(Recognizer&&) noexcept;
+  Recognizer& operator=(Recognizer&&) noexcept;
+
+  // Throws InputError when the view is outside its limits, has no valid cell or is not a pinhole grid; nothing else.
+  [[nodiscard]] RecognitionResult recognize(const RangeImageView& image,
+                                            std::optional<std::chrono::milliseconds> deadline = {}) const;
+
+  [[nodiscard]] std::vector<std::string> object_names() const;
+  [[nodiscard]] const Database& database() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// "0.1.0"
+[[nodiscard]] const char* version();
+
+}  // namespace foresight

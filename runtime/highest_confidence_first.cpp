@@ -1,0 +1,1 @@
+#include "runtime/highest_confidence_first.h"

@@ -1,0 +1,1 @@
+#include "runtime/hypothesis_field.h"

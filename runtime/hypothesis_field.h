@@ -1,0 +1,37 @@
+// The Markov random field over matches, eqs. (1)-(3).
+#pragma once
+
+#include <vector>
+
+#include "runtime/foresight.h"
+#include "runtime/match_likelihoods.h"
+
+namespace foresight {
+
+// Clique potentials of Section IV.A; lower is better.
+struct Potentials {
+  double support_on_on = -60.0;
+  double support_off_off = 40.0;
+  double contradiction_on_on = 60.0;
+  double contradiction_on_off = -10.0;
+  PriorSign prior_sign = PriorSign::minus_log;
+};
+
+enum Label : int { kOff = 0, kOn = 1 };
+
+struct HypothesisField {
+  std::vector<Match> matches;
+  std::vector<std::array<double, 2>> unary;   // [match][label]: 1-clique potential minus log-likelihood of the observation
+  std::vector<std::vector<int>> supports;     // N+, eq. (2): ascending neighbour matches; same model, distinct faces, distinct regions
+  std::vector<std::vector<int>> by_region;    // matches of each region: any two of them contradict, N-, eq. (1)
+  Potentials potentials;
+};
+
+[[nodiscard]] HypothesisField build_hypothesis_field(const std::vector<DescribedRegion>& regions,
+                                                     const std::vector<Match>& matches, const Database& database,
+                                                     const BackgroundOptions& background, const Potentials& potentials);
+
+// U(omega | R) of eq. (3) for a complete assignment, one label a match.
+[[nodiscard]] double energy(const HypothesisField& field, const std::vector<Label>& labels);
+
+}  // namespace foresight

@@ -1,0 +1,1 @@
+#include "runtime/match_likelihoods.h"

@@ -1,0 +1,1 @@
+#include "runtime/nearest_data_point.h"

@@ -1,0 +1,33 @@
+// Nearest data point of a range image, eq. (10). The only place that knows FLANN.
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "common/range_image.h"
+
+namespace foresight {
+
+// A k-d tree over all valid cells; exact. Const methods may run in parallel.
+class NearestDataPoint {
+ public:
+  // REQUIRES: at least one valid cell.
+  explicit NearestDataPoint(const RangeImage& image);
+  ~NearestDataPoint();
+  NearestDataPoint(NearestDataPoint&&) noexcept;
+  NearestDataPoint& operator=(NearestDataPoint&&) noexcept;
+
+  struct Answer {
+    Eigen::Vector3f point;   // the nearest data point
+    int cell = 0;            // its cell in the image
+    float distance = 0.0F;   // Unit: mm.
+  };
+  [[nodiscard]] Answer find(const Eigen::Vector3f& query) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace foresight

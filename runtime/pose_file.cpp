@@ -1,0 +1,1 @@
+#include "runtime/pose_file.h"

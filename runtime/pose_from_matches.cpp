@@ -1,0 +1,1 @@
+#include "runtime/pose_from_matches.h"

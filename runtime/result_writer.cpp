@@ -1,0 +1,1 @@
+#include "runtime/result_writer.h"

@@ -1,0 +1,1 @@
+#include "runtime/robust_loss.h"

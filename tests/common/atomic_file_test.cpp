@@ -1,0 +1,3 @@
+#include "common/atomic_file.h"
+
+#include <gtest/gtest.h>

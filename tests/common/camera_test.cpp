@@ -1,0 +1,3 @@
+#include "common/camera.h"
+
+#include <gtest/gtest.h>

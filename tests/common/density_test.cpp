@@ -1,0 +1,3 @@
+#include "common/density.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "common/pose.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "common/random.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "common/range_image.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "common/region_attributes.h"
+
+#include <gtest/gtest.h>

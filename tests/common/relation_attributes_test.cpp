@@ -1,0 +1,3 @@
+#include "common/relation_attributes.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "common/scan_file.h"
+
+#include <gtest/gtest.h>

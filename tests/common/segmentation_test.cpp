@@ -1,0 +1,3 @@
+#include "common/segmentation.h"
+
+#include <gtest/gtest.h>

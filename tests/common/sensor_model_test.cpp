@@ -1,0 +1,3 @@
+#include "common/sensor_model.h"
+
+#include <gtest/gtest.h>

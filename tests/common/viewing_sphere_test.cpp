@@ -1,0 +1,3 @@
+#include "common/viewing_sphere.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "compiler/cad_model.h"
+
+#include <gtest/gtest.h>

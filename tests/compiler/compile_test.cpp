@@ -1,0 +1,3 @@
+#include "compiler/compile.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "compiler/database_writer.h"
+
+#include <gtest/gtest.h>

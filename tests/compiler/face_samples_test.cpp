@@ -1,0 +1,3 @@
+#include "compiler/face_samples.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "compiler/report.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "compiler/scene_generator.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "compiler/sensor_file.h"
+
+#include <gtest/gtest.h>

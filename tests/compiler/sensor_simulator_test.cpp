@@ -1,0 +1,3 @@
+#include "compiler/sensor_simulator.h"
+
+#include <gtest/gtest.h>

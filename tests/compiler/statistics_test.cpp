@@ -1,0 +1,3 @@
+#include "compiler/statistics.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "compiler/surface_template.h"
+
+#include <gtest/gtest.h>

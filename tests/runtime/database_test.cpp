@@ -1,0 +1,3 @@
+#include "runtime/database.h"
+
+#include <gtest/gtest.h>

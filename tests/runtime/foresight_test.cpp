@@ -1,0 +1,3 @@
+#include "runtime/foresight.h"
+
+#include <gtest/gtest.h>

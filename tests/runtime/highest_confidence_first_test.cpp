@@ -1,0 +1,3 @@
+#include "runtime/highest_confidence_first.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "runtime/hypothesis_cliques.h"
+
+#include <gtest/gtest.h>

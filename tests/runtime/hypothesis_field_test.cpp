@@ -1,0 +1,3 @@
+#include "runtime/hypothesis_field.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "runtime/localization.h"
+
+#include <gtest/gtest.h>

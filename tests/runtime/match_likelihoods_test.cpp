@@ -1,0 +1,3 @@
+#include "runtime/match_likelihoods.h"
+
+#include <gtest/gtest.h>

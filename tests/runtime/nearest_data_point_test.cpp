@@ -1,0 +1,3 @@
+#include "runtime/nearest_data_point.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "runtime/pose_file.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "runtime/pose_from_matches.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "runtime/recognize.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "runtime/result_writer.h"
+
+#include <gtest/gtest.h>

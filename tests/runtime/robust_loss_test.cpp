@@ -1,0 +1,3 @@
+#include "runtime/robust_loss.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "runtime/verification.h"
+
+#include <gtest/gtest.h>

@@ -1,0 +1,3 @@
+#include "schema/container.h"
+
+#include <gtest/gtest.h>
