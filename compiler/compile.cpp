@@ -1,1 +1,76 @@
 #include "compiler/compile.h"
+
+#include <set>
+
+#include "common/errors.h"
+#include "compiler/sensor_simulator.h"
+#include "compiler/statistics.h"
+
+namespace foresight {
+namespace {
+
+CompiledModel geometry_of(const CadModel& cad) {
+  CompiledModel model;
+  model.name = cad.name;
+  model.diameter = cad.diameter();
+  model.centre = 0.5 * (cad.lowest() + cad.highest());
+  for (const CadFace& face : cad.faces) {
+    ModelFace& added = model.faces.emplace_back();
+    added.normal = face.normal;
+    added.offset = face.offset;
+    added.centroid = face.centroid;
+    added.area = face.area;
+  }
+  for (const Eigen::Vector3d& vertex : cad.vertices) model.vertices.push_back(vertex.cast<float>());
+  model.triangles = cad.triangles;
+  return model;
+}
+
+void refuse_different(const CompiledDatabase& first, const NamedDatabase& other, const std::string& first_file) {
+  const auto refuse = [&](bool same, const std::string& what) {
+    if (same) return;
+    throw DatabaseError(DatabaseFault::incompatible, other.file, what + " differs from that of " + first_file,
+                        "compile both with the same sensor file, options and version of foresightc");
+  };
+  refuse(first.sensor == other.database.sensor, "the sensor");
+  refuse(first.segmentation == other.database.segmentation, "the extraction settings");
+  refuse(first.density == other.database.density, "the density settings");
+  refuse(first.tool_version == other.database.tool_version, "the compiler version");
+  refuse(first.ray_isa == other.database.ray_isa, "the instruction set of the rays");
+}
+
+}  // namespace
+
+CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, const CompileOptions& options,
+                            const std::function<void(int)>& progress) {
+  CompiledModel model = geometry_of(cad);
+  const auto samples = sample_views(cad, sensor, segmentation_options_for(sensor), options.samples, progress);
+  estimate_statistics(samples, options.density, model);
+  SurfaceTemplateOptions surface = options.surface;
+  surface.distance = sensor.working_distance();
+  model.surface = build_surface_template(cad, surface);
+  return model;
+}
+
+CompiledDatabase new_database(const SensorModel& sensor, const CompileOptions& options) {
+  return {FORESIGHT_VERSION, ray_isa(), sensor, segmentation_options_for(sensor), options.density, {}};
+}
+
+CompiledDatabase link_databases(std::vector<NamedDatabase> parts) {
+  CompiledDatabase linked = std::move(parts.front().database);
+  std::set<std::string> names;
+  for (const CompiledModel& model : linked.models) names.insert(model.name);
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    refuse_different(linked, parts[i], parts.front().file);
+    for (CompiledModel& model : parts[i].database.models) {
+      if (!names.insert(model.name).second) {
+        throw DatabaseError(DatabaseFault::incompatible, parts[i].file, "an object named " + model.name + " is there already",
+                            "name each object once, see foresightc compile --name");
+      }
+      linked.models.push_back(std::move(model));
+    }
+  }
+  return linked;
+}
+
+}  // namespace foresight

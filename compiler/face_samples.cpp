@@ -1,1 +1,74 @@
 #include "compiler/face_samples.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numbers>
+
+#include <tbb/parallel_for.h>
+
+#include "common/viewing_sphere.h"
+
+namespace foresight {
+namespace {
+
+// The model alone, centred on the optical axis, seen from one direction: distance and turn about the axis are drawn, so
+// that the grid meets the faces at every angle. The paper states one distance; a sensor of one distance gives just that.
+SimulatedScan view_scan(const CadModel& model, const Eigen::Vector3d& direction, const SensorModel& sensor, Random random) {
+  const double distance = random.uniform(sensor.nearest_distance, sensor.farthest_distance);
+  const double roll = random.uniform(0.0, 2.0 * std::numbers::pi);
+  const Eigen::Vector3d centre = 0.5 * (model.lowest() + model.highest());
+  const PlacedObject object{&model, view_pose(direction, centre, distance, roll)};
+  return SimulatedScene(std::span(&object, 1)).scan(sensor, random);
+}
+
+ViewSample observe(const std::vector<DescribedRegion>& regions, const std::vector<CellLabel>& labels) {
+  ViewSample sample;
+  const std::vector<RegionFace> paired = pair_regions_with_faces(regions, labels);
+  for (std::size_t i = 0; i < paired.size(); ++i) {
+    const DescribedRegion& region = regions[static_cast<std::size_t>(paired[i].region)];
+    sample.faces.push_back({paired[i].face, region.attributes});
+    for (std::size_t j = 0; j < i; ++j) {
+      if (paired[i].face == paired[j].face) continue;
+      const auto [first, second] = std::minmax(paired[i].face, paired[j].face);
+      sample.pairs.push_back({first, second, relate(region, regions[static_cast<std::size_t>(paired[j].region)])});
+    }
+  }
+  return sample;
+}
+
+}  // namespace
+
+std::vector<RegionFace> pair_regions_with_faces(const std::vector<DescribedRegion>& regions,
+                                                const std::vector<CellLabel>& labels, double smallest_share) {
+  std::vector<RegionFace> pairs;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const std::vector<int>& cells = regions[i].region.cells;
+    std::map<int, int> votes;
+    for (const int cell : cells) ++votes[labels[static_cast<std::size_t>(cell)].face];
+    const auto most = std::max_element(votes.begin(), votes.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most == votes.end() || most->first < 0) continue;
+    if (most->second >= smallest_share * static_cast<double>(cells.size())) {
+      pairs.push_back({static_cast<int>(i), most->first});
+    }
+  }
+  return pairs;
+}
+
+std::vector<ViewSample> sample_views(const CadModel& model, const SensorModel& sensor,
+                                     const SegmentationOptions& segmentation, const FaceSampleOptions& options,
+                                     const std::function<void(int)>& progress) {
+  const ViewingSphere sphere(options.views);
+  std::vector<ViewSample> samples(static_cast<std::size_t>(sphere.size()));
+  std::atomic<int> done = 0;
+  tbb::parallel_for(0, sphere.size(), [&](int view) {
+    const SimulatedScan scan = view_scan(model, sphere.centre(view), sensor, Random(options.seed, static_cast<std::uint64_t>(view)));
+    const auto regions = extract_regions(scan.image, sensor.camera, segmentation);
+    samples[static_cast<std::size_t>(view)] = observe(regions, scan.labels);
+    const int count = ++done;
+    if (progress) progress(count);
+  });
+  return samples;
+}
+
+}  // namespace foresight

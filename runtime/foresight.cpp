@@ -1,1 +1,66 @@
 #include "runtime/foresight.h"
+
+#include <cmath>
+
+#include "common/errors.h"
+#include "runtime/database.h"
+#include "runtime/recognize.h"
+
+namespace foresight {
+namespace {
+
+bool side_in_limits(int cells) { return cells >= kSmallestImageSide && cells <= kLargestImageSide; }
+
+RangeImage copy_image(const RangeImageView& view) {
+  if (view.xyz == nullptr || !side_in_limits(view.rows) || !side_in_limits(view.columns)) {
+    throw InputError("range image", "no data, or not between 32 x 32 and 4096 x 4096 cells", "give a whole organized range image");
+  }
+  RangeImage image(view.rows, view.columns);
+  for (int cell = 0; cell < image.size(); ++cell) {
+    const float* xyz = view.xyz + 3 * static_cast<std::ptrdiff_t>(cell);
+    if (std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]) && xyz[2] > 0.0F) {
+      image[cell] = {xyz[0], xyz[1], xyz[2]};
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+struct Recognizer::Impl {
+  Database database;
+  RecognizeOptions options;
+};
+
+Recognizer::Recognizer(const std::string& database_file, const RecognizeOptions& options) {
+  check(options);
+  impl_ = std::make_unique<Impl>(Impl{load_database(database_file), options});
+}
+
+Recognizer::~Recognizer() = default;
+Recognizer::Recognizer(Recognizer&&) noexcept = default;
+Recognizer& Recognizer::operator=(Recognizer&&) noexcept = default;
+
+RecognitionResult Recognizer::recognize(const RangeImageView& view, std::optional<std::chrono::milliseconds> deadline) const {
+  const auto start = std::chrono::steady_clock::now();
+  const RangeImage image = copy_image(view);
+  const std::optional<PinholeCamera> camera = fit_camera(image);
+  if (!camera) {
+    throw InputError("range image", "its grid is not that of a pinhole camera, or hardly any cell is valid",
+                     "give x, y, z in the sensor frame (x right, y down, z forward, mm), origin at the camera centre");
+  }
+  const Deadline until = deadline ? Deadline(start + *deadline) : std::nullopt;
+  return foresight::recognize(image, *camera, impl_->database, impl_->options, until);
+}
+
+std::vector<std::string> Recognizer::object_names() const {
+  std::vector<std::string> names;
+  for (const CompiledModel& model : impl_->database.models()) names.push_back(model.name);
+  return names;
+}
+
+const Database& Recognizer::database() const { return impl_->database; }
+
+const char* version() { return FORESIGHT_VERSION; }
+
+}  // namespace foresight

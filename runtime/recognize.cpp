@@ -1,1 +1,199 @@
 #include "runtime/recognize.h"
+
+#include <algorithm>
+
+#include "common/errors.h"
+#include "runtime/explained_regions.h"
+#include "runtime/highest_confidence_first.h"
+#include "runtime/hypothesis_cliques.h"
+#include "runtime/pose_from_matches.h"
+
+namespace foresight {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Adds the time since the last lap to a stage.
+class Stopwatch {
+ public:
+  void lap(double& stage) {
+    const Clock::time_point now = Clock::now();
+    stage += std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+// What verifying needs to know about one scan.
+struct ScanContext {
+  const RangeImage& image;
+  const PinholeCamera& camera;
+  const Database& database;
+  const std::vector<DescribedRegion>& regions;
+  const HypothesisField& field;
+  NearestDataPoint data;
+  ViewingSphere sphere{kAspectCells};
+  std::vector<int> region_of_cell;
+};
+
+LocalizationOptions localization_options(const RecognizeOptions& options) {
+  LocalizationOptions localization;
+  localization.loss = options.loss;
+  return localization;
+}
+
+VerificationOptions verification_options(const RecognizeOptions& options) {
+  VerificationOptions verification;
+  verification.smallest_matched = options.smallest_matched;
+  verification.smallest_coherent = options.smallest_coherent;
+  verification.largest_occluding = options.largest_occluding;
+  return verification;
+}
+
+std::vector<Label> prune(const HypothesisField& field, Pruning pruning) {
+  if (pruning == Pruning::none) return std::vector<Label>(field.matches.size(), kOn);
+  return highest_confidence_first(field);
+}
+
+std::optional<Pose> estimate_pose(const ScanContext& scan, const ObjectHypothesis& hypothesis) {
+  std::vector<RegionFaceMatch> matches;
+  for (const int index : hypothesis.matches) {
+    const Match& match = scan.field.matches[static_cast<std::size_t>(index)];
+    matches.push_back({&scan.regions[static_cast<std::size_t>(match.region)], &scan.database.face(match.face)});
+  }
+  return pose_from_matches(matches);
+}
+
+Detection make_detection(const ScanContext& scan, const ObjectHypothesis& hypothesis, const RefinedPose& refined, int rank) {
+  Detection detection = to_detection(scan.database.models()[static_cast<std::size_t>(hypothesis.model)], refined);
+  detection.rank = rank;
+  for (const int index : hypothesis.matches) {
+    const Match& match = scan.field.matches[static_cast<std::size_t>(index)];
+    detection.faces.push_back(scan.database.faces()[static_cast<std::size_t>(match.face)].face);
+    detection.regions.push_back(match.region);
+  }
+  return detection;
+}
+
+bool uses_any(const HypothesisField& field, const ObjectHypothesis& hypothesis, const std::vector<bool>& taken) {
+  return std::any_of(hypothesis.matches.begin(), hypothesis.matches.end(), [&](int index) {
+    return taken[static_cast<std::size_t>(field.matches[static_cast<std::size_t>(index)].region)];
+  });
+}
+
+// Section V.C: each hypothesis in order is located, refined and verified; an accepted one drops its rivals.
+void verify_in_order(const ScanContext& scan, const std::vector<ObjectHypothesis>& hypotheses,
+                     const RecognizeOptions& options, const Deadline& deadline, RecognitionResult& result) {
+  std::vector<bool> taken(scan.regions.size(), false);
+  Stopwatch watch;
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const ObjectHypothesis& hypothesis = hypotheses[i];
+    if (uses_any(scan.field, hypothesis, taken)) continue;
+    if (deadline && Clock::now() >= *deadline) {
+      result.complete = false;
+      return;
+    }
+    const std::optional<Pose> start = estimate_pose(scan, hypothesis);
+    if (!start) continue;
+    const CompiledModel& model = scan.database.models()[static_cast<std::size_t>(hypothesis.model)];
+    RefinedPose refined;
+    refined.localization = localize(model, scan.sphere, *start, scan.data, localization_options(options));
+    watch.lap(result.milliseconds.localize);
+    refined.verification = verify(model, scan.sphere, refined.localization.T_sensor_model, scan.image, scan.camera,
+                                  scan.data, verification_options(options));
+    ++result.statistics.verifications;
+    result.statistics.energy_evaluations += refined.localization.energy_evaluations;
+    if (refined.verification.accepted) {
+      result.detections.push_back(make_detection(scan, hypothesis, refined, static_cast<int>(i) + 1));
+      for (const int region : result.detections.back().regions) taken[static_cast<std::size_t>(region)] = true;
+      for (const int region : explained_regions(model, scan.sphere, refined.localization.T_sensor_model, scan.regions,
+                                                scan.region_of_cell, scan.data)) {
+        taken[static_cast<std::size_t>(region)] = true;
+      }
+    }
+    watch.lap(result.milliseconds.verify);
+    const auto reached = [](auto count, int most) { return most > 0 && count >= static_cast<decltype(count)>(most); };
+    if (reached(result.detections.size(), options.most_detections)) return;
+    if (reached(result.statistics.verifications, options.most_verifications)) return;
+  }
+}
+
+}  // namespace
+
+void check(const RecognizeOptions& options) {
+  const auto fraction = [](double value, const char* name) {
+    if (!(value >= 0.0 && value <= 1.0)) throw UsageError(name, "outside its limits", "give a fraction from 0 to 1");
+  };
+  fraction(options.smallest_matched, "smallest_matched");
+  fraction(options.smallest_coherent, "smallest_coherent");
+  fraction(options.largest_occluding, "largest_occluding");
+  if (options.most_detections < 0) throw UsageError("most_detections", "negative", "give 0 for no limit, or a count");
+  if (options.most_verifications < 0) throw UsageError("most_verifications", "negative", "give 0 for no limit, or a count");
+}
+
+RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
+                            const RecognizeOptions& options, const Deadline& deadline) {
+  RecognitionResult result;
+  Stopwatch total;
+  Stopwatch watch;
+  const auto regions = extract_regions(image, camera, database.content().segmentation);
+  watch.lap(result.milliseconds.extract);
+
+  const BackgroundOptions background;
+  Potentials potentials;
+  potentials.prior_sign = options.prior_sign;
+  const auto matches = match_likelihoods(regions, database, background);                             // eqs. (4), (5)
+  const auto field = build_hypothesis_field(regions, matches, database, background, potentials);     // eqs. (1)-(3)
+  const auto labels = prune(field, options.pruning);
+  watch.lap(result.milliseconds.field);
+  const auto hypotheses = hypothesis_cliques(field, database, labels);                               // least energy first
+  watch.lap(result.milliseconds.hypotheses);
+
+  result.statistics.regions = static_cast<int>(regions.size());
+  result.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());
+  result.statistics.threshold_matches = static_cast<long>(matches.size());
+  result.statistics.active_matches = static_cast<long>(std::count(labels.begin(), labels.end(), kOn));
+  result.statistics.hypotheses = static_cast<long>(hypotheses.size());
+
+  if (!hypotheses.empty()) {
+    std::vector<Region> bare;
+    for (const DescribedRegion& region : regions) bare.push_back(region.region);
+    const ScanContext scan{image, camera, database, regions, field, NearestDataPoint(image), ViewingSphere(kAspectCells),
+                           label_image(bare, image.size())};
+    watch.lap(result.milliseconds.localize);  // the k-d tree serves localization
+    verify_in_order(scan, hypotheses, options, deadline, result);                                    // Section V
+  }
+  total.lap(result.milliseconds.total);
+  return result;
+}
+
+Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
+  Detection detection;
+  detection.object = model.name;
+  const Pose& pose = refined.localization.T_sensor_model;
+  const auto entry = [&](int row, int column) -> double& { return detection.T_sensor_model[static_cast<std::size_t>(4 * row + column)]; };
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) entry(row, column) = pose.rotation(row, column);
+    entry(row, 3) = pose.translation[row];
+  }
+  entry(3, 3) = 1.0;
+  detection.matched = refined.verification.matched;
+  detection.coherent = refined.verification.coherent;
+  detection.occluding = refined.verification.occluding;
+  detection.score = detection.matched;
+  return detection;
+}
+
+RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& camera, const CompiledModel& model,
+                              const Pose& T_sensor_model, const RecognizeOptions& options) {
+  const NearestDataPoint data(image);
+  const ViewingSphere sphere(kAspectCells);
+  RefinedPose refined;
+  refined.localization = localize(model, sphere, T_sensor_model, data, localization_options(options));
+  refined.verification = verify(model, sphere, refined.localization.T_sensor_model, image, camera, data, verification_options(options));
+  return refined;
+}
+
+}  // namespace foresight

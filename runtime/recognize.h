@@ -22,11 +22,15 @@ using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 [[nodiscard]] RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
                                           const RecognizeOptions& options, const Deadline& deadline = {});
 
-// Refines and verifies one given pose of one model.
+
+// One given pose of one model, refined and verified.
 struct RefinedPose {
   Localization localization;
   Verification verification;
 };
+// A refined pose as a detection: pose, fractions and score; no rank, faces or regions yet.
+[[nodiscard]] Detection to_detection(const CompiledModel& model, const RefinedPose& refined);
+
 [[nodiscard]] RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& camera, const CompiledModel& model,
                                             const Pose& T_sensor_model, const RecognizeOptions& options);
 
