@@ -12,8 +12,8 @@
 namespace foresight {
 
 struct ScanReadOptions {
-  std::string camera_file;           // for PNG: camera JSON, see read_depth_camera; required there, an error elsewhere
-  double unit_mm = 1.0;              // length of one unit of a PCD or PLY file. Unit: mm. Limit: > 0.
+  std::string camera_file;  // for PNG: camera JSON, see read_depth_camera; required there, an error elsewhere
+  double unit_mm = 1.0;     // length of one unit of a PCD or PLY file. Unit: mm. Limit: > 0.
 };
 
 // A scan with the camera its file states; PCD and PLY state none (fit_camera finds it).
@@ -22,15 +22,18 @@ struct Scan {
   std::optional<PinholeCamera> camera;
 };
 
-// Format by content, not by name. Throws InputError: missing, empty, truncated, foreign or unorganized file, a grid
-// outside 32x32 to 4096x4096, no valid cell at all, or a unit that cannot be right (the nearest depth below 10 mm or above 100 m).
+// Format by content, not by name. A cell whose point is not finite or not in front of the sensor (z <= 0) is invalid.
+// Points are taken to be in the sensor frame: a PCD VIEWPOINT is not applied. A PNG's own grid counts. Throws
+// InputError: missing, empty, truncated, foreign or unorganized file, a grid outside 32x32 to 4096x4096, no valid cell
+// at all, or a unit that cannot be right (the nearest depth below 10 mm or above 100 m).
 [[nodiscard]] Scan read_scan(const std::string& file, const ScanReadOptions& options = {});
 
-// A depth camera as BOP writes it: camera.json (fx, fy, cx, cy, depth_scale, optional width and height) or one entry of scene_camera.json
-// (cam_K, depth_scale; the entry's key is the image number in the scan's file name, the only entry otherwise). depth_mm = value * depth_scale.
+// A depth camera as BOP writes it: camera.json (fx, fy, cx, cy, depth_scale, optional width and height) or one entry of
+// scene_camera.json (cam_K without skew, depth_scale; the entry's key is the image number in the scan's file name, the
+// only entry otherwise). depth_mm = value * depth_scale.
 struct DepthCamera {
-  PinholeCamera camera;              // rows and columns 0 where the file does not state them
-  double depth_scale = 1.0;          // Unit: mm per count. Limit: > 0.
+  PinholeCamera camera;      // rows and columns 0 where the file does not state them
+  double depth_scale = 1.0;  // Unit: mm per count. Limit: > 0.
 };
 [[nodiscard]] DepthCamera read_depth_camera(const std::string& file, const std::string& scan_file);
 
@@ -38,7 +41,8 @@ enum class PcdEncoding { ascii, binary, binary_compressed };
 // Organized PCD 0.7, fields x y z (float), invalid cells NaN. Unit: mm. Written whole or not at all.
 void write_pcd(const std::string& file, const RangeImage& image, PcdEncoding encoding = PcdEncoding::binary);
 
-// 16-bit depth PNG, and the camera.json that belongs to it. 0 = invalid; depths beyond 65535 * depth_scale are an InputError.
+// 16-bit depth PNG, and the camera.json that belongs to it. 0 = invalid; depths beyond 65535 * depth_scale, or so small
+// that they would become 0, are an InputError.
 void write_depth_png(const std::string& file, const RangeImage& image, double depth_scale);
 void write_camera_json(const std::string& file, const PinholeCamera& camera, double depth_scale);
 
