@@ -1,5 +1,5 @@
-// Highest Confidence First: energy minimisation of the field (Chou and Brown, "The Theory and Practice of Bayesian Image
-// Labeling", IJCV 4, 1990; Section IV.B).
+// Highest Confidence First: energy minimisation of the field (Chou and Brown, "The Theory and Practice of Bayesian
+// Image Labeling", IJCV 4, 1990; Section IV.B).
 #pragma once
 
 #include <vector>

@@ -13,7 +13,8 @@ struct ObjectHypothesis {
   double energy = 0.0;       // contribution to eq. (3): its unaries (ON) and its pair potentials
 };
 
-// All 3-cliques of active matches in N+, and the 2-cliques that no 3-clique contains, ordered by energy (ties: by matches).
+// All 3-cliques of active matches in N+, and the 2-cliques that no 3-clique contains, ordered by energy (ties: by
+// matches).
 [[nodiscard]] std::vector<ObjectHypothesis> hypothesis_cliques(const HypothesisField& field, const Database& database,
                                                                const std::vector<Label>& labels);
 

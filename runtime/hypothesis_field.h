@@ -1,6 +1,7 @@
 // The Markov random field over matches, eqs. (1)-(3).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "runtime/foresight.h"
@@ -8,7 +9,7 @@
 
 namespace foresight {
 
-// Clique potentials of Section IV.A; lower is better.
+// Clique potentials of Section IV.A; lower is better. The potentials of pairs count once for each unordered pair.
 struct Potentials {
   double support_on_on = -60.0;
   double support_off_off = 40.0;
@@ -21,12 +22,16 @@ enum Label : int { kOff = 0, kOn = 1 };
 
 struct HypothesisField {
   std::vector<Match> matches;
-  std::vector<std::array<double, 2>> unary;   // [match][label]: 1-clique potential minus log-likelihood of the observation
-  std::vector<std::vector<int>> supports;     // N+, eq. (2): ascending neighbour matches; same model, distinct faces, distinct regions
-  std::vector<std::vector<int>> by_region;    // matches of each region: any two of them contradict, N-, eq. (1)
+  // [match][label]: 1-clique potential minus log-likelihood of the observation.
+  std::vector<std::array<double, 2>> unary;
+  // N+, eq. (2): ascending neighbour matches; same model, distinct faces, distinct regions.
+  std::vector<std::vector<int>> supports;
+  // Matches of each region: any two of them contradict, N-, eq. (1).
+  std::vector<std::vector<int>> by_region;
   Potentials potentials;
 };
 
+// REQUIRES: matches as match_likelihoods returns them for these regions, database and background.
 [[nodiscard]] HypothesisField build_hypothesis_field(const std::vector<DescribedRegion>& regions,
                                                      const std::vector<Match>& matches, const Database& database,
                                                      const BackgroundOptions& background, const Potentials& potentials);

@@ -16,13 +16,13 @@ struct BackgroundOptions {
 // Region R explained by face M: one ON/OFF variable of the field.
 struct Match {
   int region = 0;
-  int face = 0;                  // index into Database::faces()
-  double log_likelihood_on = 0;  // log P(R|M), eq. (4)
-  double log_likelihood_off = 0; // log P(R|not M), eq. (5)
+  int face = 0;                   // index into Database::faces()
+  double log_likelihood_on = 0;   // log P(R|M), eq. (4)
+  double log_likelihood_off = 0;  // log P(R|not M), eq. (5)
 };
 
 // Every match with P(R|M) > 0, ordered by region, then face. The number of possible matches is regions * faces.
-[[nodiscard]] std::vector<Match> match_likelihoods(const std::vector<DescribedRegion>& regions, const Database& database,
-                                                   const BackgroundOptions& options);
+[[nodiscard]] std::vector<Match> match_likelihoods(const std::vector<DescribedRegion>& regions,
+                                                   const Database& database, const BackgroundOptions& options);
 
 }  // namespace foresight

@@ -15,9 +15,10 @@ struct RegionFaceMatch {
   const ModelFace* face = nullptr;
 };
 
-// Rotation by least squares on the normals, completed by the directions between centroids where all normals are parallel;
-// translation from the plane offsets, completed by the centroids ("using center of gravity as an additional constraint")
-// in the directions the planes leave free. None when the rotation stays undetermined. REQUIRES: at least two matches.
+// Rotation by least squares on the normals, completed by the directions between centroids where all normals are
+// parallel; translation from the plane offsets, completed by the centroids ("using center of gravity as an additional
+// constraint") in the directions the planes leave free. None when the rotation stays undetermined. REQUIRES: at least
+// two matches.
 [[nodiscard]] std::optional<Pose> pose_from_matches(std::span<const RegionFaceMatch> matches);
 
 }  // namespace foresight
