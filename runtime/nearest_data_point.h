@@ -1,9 +1,8 @@
 // Nearest data point of a range image, eq. (10). The only place that knows FLANN.
 #pragma once
 
-#include <memory>
-
 #include <Eigen/Core>
+#include <memory>
 
 #include "common/range_image.h"
 
@@ -19,9 +18,9 @@ class NearestDataPoint {
   NearestDataPoint& operator=(NearestDataPoint&&) noexcept;
 
   struct Answer {
-    Eigen::Vector3f point;   // the nearest data point
-    int cell = 0;            // its cell in the image
-    float distance = 0.0F;   // Unit: mm.
+    Eigen::Vector3f point;  // the nearest data point
+    int cell = 0;           // its cell in the image
+    float distance = 0.0F;  // Unit: mm.
   };
   [[nodiscard]] Answer find(const Eigen::Vector3f& query) const;
 
