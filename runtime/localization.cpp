@@ -4,6 +4,8 @@
 #include <cassert>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "runtime/robust_loss.h"
 
 namespace foresight {

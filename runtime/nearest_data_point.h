@@ -8,7 +8,8 @@
 
 namespace foresight {
 
-// A k-d tree over all valid cells; exact. Const methods may run in parallel.
+// A k-d tree over all valid cells; exact up to the rounding of float. Keeps its own copy of the points. Const methods
+// may run in parallel.
 class NearestDataPoint {
  public:
   // REQUIRES: at least one valid cell.
@@ -22,6 +23,7 @@ class NearestDataPoint {
     int cell = 0;           // its cell in the image
     float distance = 0.0F;  // Unit: mm.
   };
+  // REQUIRES: a finite query. Of points equally near, the same one every time.
   [[nodiscard]] Answer find(const Eigen::Vector3f& query) const;
 
  private:
