@@ -1,1 +1,165 @@
 #include "runtime/localization.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "runtime/robust_loss.h"
+
+namespace foresight {
+namespace {
+
+// What one refinement carries along.
+class Refinement {
+ public:
+  Refinement(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start, const NearestDataPoint& data,
+             const LocalizationOptions& options)
+      : model_(model), sphere_(sphere), data_(data), options_(options), pose_(start) {
+    look(visible_points(model_, sphere_, pose_));
+  }
+
+  // The two line searches of the pseudo-code. Each says whether it took a step.
+  bool translate();
+  bool rotate();
+
+  // V(q) of the current pose. E(q) is computed anew only when V(q) is another one: else it is known from the last step.
+  void update_aspect() {
+    std::vector<int> visible = visible_points(model_, sphere_, pose_);
+    if (visible != visible_) look(std::move(visible));
+  }
+  [[nodiscard]] Localization result() const { return {pose_, current_.energy, evaluations_}; }
+
+ private:
+  void look(std::vector<int> visible) {
+    visible_ = std::move(visible);
+    current_ = evaluate(pose_);
+  }
+  EnergyEvaluation evaluate(const Pose& pose) {
+    ++evaluations_;
+    return evaluate_energy(model_, visible_, pose, data_, options_);
+  }
+  // WHILE E(q + dq) < E(q): q = q + dq. pose_after: the pose after a number of steps.
+  template <typename PoseAfter>
+  bool search_line(const PoseAfter& pose_after);
+
+  const CompiledModel& model_;
+  const ViewingSphere& sphere_;
+  const NearestDataPoint& data_;
+  const LocalizationOptions& options_;
+  Pose pose_;
+  std::vector<int> visible_;  // V, fixed during a line search
+  EnergyEvaluation current_;  // E at pose_ over visible_
+  int evaluations_ = 0;
+};
+
+template <typename PoseAfter>
+bool Refinement::search_line(const PoseAfter& pose_after) {
+  int steps = 0;
+  while (true) {
+    const Pose trial = pose_after(steps + 1);
+    EnergyEvaluation evaluation = evaluate(trial);
+    if (!(evaluation.energy < current_.energy)) return steps > 0;
+    pose_ = trial;
+    current_ = std::move(evaluation);
+    ++steps;
+  }
+}
+
+bool Refinement::translate() {
+  const Eigen::Vector3d gradient = energy_gradient(current_, pose_ * model_.centre, options_).translation;
+  if (!(gradient.norm() > 0.0)) return false;
+  const Eigen::Vector3d step = -options_.translation_step * gradient.normalized();
+  return search_line([start = pose_, step](int steps) -> Pose {
+    return {start.rotation, start.translation + steps * step};
+  });
+}
+
+// The paper descends the gradient by the quaternion's components. Restricted to unit quaternions it is proportional to
+// the gradient by a rotation vector (q -> exp(w / 2) q moves q by |w| / 2), so both turn about the same axis, and a
+// step is a turn of rotation_step about it. Paper: q_theta turns about the origin of the model's frame, wherever the
+// CAD file has it. Here: about the model's centre, so that turning moves the object as little as possible and does not
+// undo the translation just found.
+bool Refinement::rotate() {
+  const Eigen::Vector3d centre = pose_ * model_.centre;
+  const Eigen::Vector3d gradient = energy_gradient(current_, centre, options_).rotation;
+  if (!(gradient.norm() > 0.0)) return false;
+  const Eigen::Vector3d step = -options_.rotation_step * gradient.normalized();
+  return search_line([this, start = pose_.rotation, centre, step](int steps) -> Pose {
+    const Eigen::Matrix3d rotation = nearest_rotation(rotation_from_vector(steps * step) * start);
+    return {rotation, centre - rotation * model_.centre};
+  });
+}
+
+}  // namespace
+
+std::vector<int> visible_points(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model) {
+  assert(sphere.size() == kAspectCells);
+  const Eigen::Vector3d direction = -(T_sensor_model.rotation.transpose() * (T_sensor_model * model.centre));
+  if (!(direction.norm() > 0.0)) return {};
+  const auto cell = static_cast<std::size_t>(sphere.cell_of(direction.normalized()));
+  const std::vector<int>& aspect = model.surface.aspects[cell];
+  const auto shown = [&aspect](int face) { return std::binary_search(aspect.begin(), aspect.end(), face); };
+  std::vector<int> visible;
+  for (std::size_t i = 0; i < model.surface.points.size(); ++i) {
+    const std::vector<int>& faces = model.surface.points[i].faces;
+    if (std::any_of(faces.begin(), faces.end(), shown)) visible.push_back(static_cast<int>(i));
+  }
+  return visible;
+}
+
+EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<int>& visible,
+                                 const Pose& T_sensor_model, const NearestDataPoint& data,
+                                 const LocalizationOptions& options) {
+  EnergyEvaluation evaluation;
+  evaluation.residuals.reserve(visible.size());
+  for (const int i : visible) {
+    const TemplatePoint& point = model.surface.points[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d x = T_sensor_model * point.position.cast<double>();
+    const Eigen::Vector3d nearest = data.find(x.cast<float>()).point.cast<double>();
+    const double z = (x - nearest).norm();  // Equation (10)
+    evaluation.residuals.push_back({x, nearest, z});
+    evaluation.energy += rho(options.loss, z / options.sigma);  // Equation (9)
+  }
+  return evaluation;
+}
+
+double localization_energy(const CompiledModel& model, const std::vector<int>& visible, const Pose& T_sensor_model,
+                           const NearestDataPoint& data, const LocalizationOptions& options) {
+  return evaluate_energy(model, visible, T_sensor_model, data, options).energy;
+}
+
+EnergyGradient energy_gradient(const EnergyEvaluation& evaluation, const Eigen::Vector3d& centre,
+                               const LocalizationOptions& options) {
+  EnergyGradient gradient;
+  for (const EnergyEvaluation::Residual& residual : evaluation.residuals) {
+    // d rho(z / sigma) / dx = psi(z / sigma) / sigma * (x - a) / z; written with the weight, it needs no division by z
+    // and is 0 at z = 0.
+    const double w = weight(options.loss, residual.distance / options.sigma) / (options.sigma * options.sigma);
+    const Eigen::Vector3d pull = w * (residual.point - residual.nearest);
+    gradient.translation += pull;
+    gradient.rotation += (residual.point - centre).cross(pull);
+  }
+  return gradient;
+}
+
+Localization localize(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start,
+                      const NearestDataPoint& data, const LocalizationOptions& options) {
+  assert(options.sigma > 0.0 && options.translation_step > 0.0 && options.rotation_step > 0.0 &&
+         options.most_rounds >= 1);
+  Refinement refinement(model, sphere, start, data, options);
+  for (int round = 0; round < options.most_rounds; ++round) {
+    const bool translated = refinement.translate();
+    refinement.update_aspect();
+    const bool rotated = refinement.rotate();
+    refinement.update_aspect();
+    // Paper: until E(q) = E_0. The two energies may sum over different aspects; that no step was taken says the same
+    // within one aspect, and holds across them. Steps may still go in circles when the aspect alternates: hence the
+    // cap.
+    if (!translated && !rotated) break;
+  }
+  return refinement.result();
+}
+
+}  // namespace foresight

@@ -1,1 +1,64 @@
 #include "runtime/nearest_data_point.h"
+
+#include <flann/algorithms/dist.h>
+#include <flann/algorithms/kdtree_single_index.h>
+
+#include <cassert>
+#include <limits>
+#include <vector>
+
+namespace foresight {
+namespace {
+
+using Tree = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
+
+// Keeps the one nearest point and lives on the stack; FLANN's own result sets allocate for every query.
+class Nearest final : public flann::ResultSet<float> {
+ public:
+  [[nodiscard]] bool full() const override { return distance_ < std::numeric_limits<float>::max(); }
+  void addPoint(float squared_distance, std::size_t index) override {
+    if (!(squared_distance < distance_)) return;
+    distance_ = squared_distance;
+    index_ = index;
+  }
+  [[nodiscard]] float worstDist() const override { return distance_; }
+  [[nodiscard]] std::size_t index() const { return index_; }
+
+ private:
+  float distance_ = std::numeric_limits<float>::max();
+  std::size_t index_ = 0;
+};
+
+}  // namespace
+
+// The tree refers to `points` by address, so an Impl is never copied or moved.
+struct NearestDataPoint::Impl {
+  std::vector<Eigen::Vector3f> points;  // the valid cells, row by row
+  std::vector<int> cells;               // the cell of each
+  Tree tree;
+};
+
+NearestDataPoint::NearestDataPoint(const RangeImage& image) : impl_(std::make_unique<Impl>()) {
+  for (int cell = 0; cell < image.size(); ++cell) {
+    if (!image.valid(cell)) continue;
+    impl_->points.push_back(image[cell]);
+    impl_->cells.push_back(cell);
+  }
+  assert(!impl_->points.empty());
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+  impl_->tree.buildIndex(flann::Matrix<float>(impl_->points.front().data(), impl_->points.size(), 3));
+}
+
+NearestDataPoint::~NearestDataPoint() = default;
+NearestDataPoint::NearestDataPoint(NearestDataPoint&&) noexcept = default;
+NearestDataPoint& NearestDataPoint::operator=(NearestDataPoint&&) noexcept = default;
+
+NearestDataPoint::Answer NearestDataPoint::find(const Eigen::Vector3f& query) const {
+  assert(query.allFinite());
+  Nearest nearest;
+  impl_->tree.findNeighbors(nearest, query.data(), flann::SearchParams());
+  const Eigen::Vector3f& point = impl_->points[nearest.index()];
+  return {point, impl_->cells[nearest.index()], (query - point).norm()};
+}
+
+}  // namespace foresight

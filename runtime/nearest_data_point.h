@@ -1,15 +1,15 @@
 // Nearest data point of a range image, eq. (10). The only place that knows FLANN.
 #pragma once
 
-#include <memory>
-
 #include <Eigen/Core>
+#include <memory>
 
 #include "common/range_image.h"
 
 namespace foresight {
 
-// A k-d tree over all valid cells; exact. Const methods may run in parallel.
+// A k-d tree over all valid cells; exact up to the rounding of float. Keeps its own copy of the points. Const methods
+// may run in parallel.
 class NearestDataPoint {
  public:
   // REQUIRES: at least one valid cell.
@@ -19,10 +19,11 @@ class NearestDataPoint {
   NearestDataPoint& operator=(NearestDataPoint&&) noexcept;
 
   struct Answer {
-    Eigen::Vector3f point;   // the nearest data point
-    int cell = 0;            // its cell in the image
-    float distance = 0.0F;   // Unit: mm.
+    Eigen::Vector3f point;  // the nearest data point
+    int cell = 0;           // its cell in the image
+    float distance = 0.0F;  // Unit: mm.
   };
+  // REQUIRES: a finite query. Of points equally near, the same one every time.
   [[nodiscard]] Answer find(const Eigen::Vector3f& query) const;
 
  private:

@@ -13,17 +13,18 @@
 namespace foresight {
 
 struct VerificationOptions {
-  double match_distance = 4.0;         // 2 sigma: a nearer template point is matched. Unit: mm. Limit: > 0.
-  double smallest_matched = 0.5;       // alpha. Limit: 0 to 1.
-  double smallest_coherent = 0.4;      // beta. Limit: 0 to 1.
-  double largest_occluding = 0.175;    // gamma. Limit: 0 to 1.
+  double match_distance = 4.0;       // 2 sigma: a nearer template point is matched. Unit: mm. Limit: > 0.
+  double smallest_matched = 0.5;     // alpha. Limit: 0 to 1.
+  double smallest_coherent = 0.4;    // beta. Limit: 0 to 1.
+  double largest_occluding = 0.175;  // gamma. Limit: 0 to 1.
 };
 
 struct Verification {
   int visible = 0;         // |V(q)|
   double matched = 0.0;    // alpha = |M(q)| / |V(q)|
   double coherent = 0.0;   // beta, over the visible neighbours of every visible point
-  double occluding = 0.0;  // gamma = |Occ(q)| / |V(q)|; a point occludes when the data point in its cell is farther by more than match_distance
+  double occluding = 0.0;  // gamma = |Occ(q)| / |V(q)|; a point occludes when the data point in its cell is farther by
+                           // more than match_distance
   bool accepted = false;
 };
 
