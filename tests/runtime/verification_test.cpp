@@ -1,5 +1,7 @@
 #include "runtime/verification.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "runtime/localization.h"
