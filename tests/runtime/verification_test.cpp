@@ -1,8 +1,8 @@
 #include "runtime/verification.h"
 
-#include <vector>
-
 #include <gtest/gtest.h>
+
+#include <vector>
 
 #include "runtime/localization.h"
 #include "tests/runtime/box_scene.h"
