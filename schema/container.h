@@ -12,6 +12,7 @@ namespace foresight {
 
 inline constexpr std::uint32_t kContainerVersion = 1;  // of files written now, and the newest this reader knows
 inline constexpr std::uint32_t kOldestReader = 1;      // the oldest reader that may read files written now
+inline constexpr std::uint32_t kSchemaVersion = 1;     // what the messages inside mean; the header section carries it
 
 struct Section {
   std::string name;  // 1 to 32 bytes, printable ASCII without blanks; several sections may have one name
