@@ -1,5 +1,5 @@
-// The compiled description of sensor.proto and database.proto, for reading messages from text. Only the compiler links it:
-// the generated code is lite and knows no field names.
+// The compiled description of sensor.proto and database.proto, for reading messages from text. Only the compiler links
+// it: the generated code is lite and knows no field names.
 #pragma once
 
 #include <string_view>
