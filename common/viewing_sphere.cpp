@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include <Eigen/Geometry>
+
 #include "common/errors.h"
 
 namespace foresight {
