@@ -1,7 +1,10 @@
 #include "common/viewing_sphere.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+
+#include <Eigen/Geometry>
 
 #include "common/errors.h"
 
