@@ -1,9 +1,8 @@
 #include "common/viewing_sphere.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
-
-#include <Eigen/Geometry>
 
 #include <Eigen/Geometry>
 
