@@ -159,27 +159,60 @@ double largest_mse_of(const SegmentationOptions& options) {
 
 }  // namespace
 
-CellConnectivity::CellConnectivity(const RangeImage& image, const SegmentationOptions& options)
-    : columns_(image.columns), bits_(static_cast<std::size_t>(image.size()), 0) {
-  const auto together = [&](int a, int b) {
-    const Eigen::Vector3f step = image[b] - image[a];
-    const double lateral = std::hypot(step.x(), step.y());
-    return std::abs(step.z()) <= options.largest_depth_step * lateral + 4.0 * options.plane_sigma;
-  };
-  // Cells to the next valid one within `room`, 0 when there is none or a depth step lies between.
-  const auto gap_to_next = [&](int cell, int stride, int room) -> unsigned {
+namespace {
+
+// Decides whether neighbouring cells hold together.
+class StepJudge {
+ public:
+  StepJudge(const RangeImage& image, const SegmentationOptions& options) : image_(image), options_(options) {}
+
+  // Cells to the next valid one along a row or column within `room`, 0 when there is none or a depth step lies between.
+  // behind: how many cells lie before this one on its row or column.
+  [[nodiscard]] unsigned gap_to_next(int cell, int stride, int room, int behind) const {
     for (int gap = 1; gap <= std::min(2, room); ++gap) {
       const int next = cell + gap * stride;
-      if (image.valid(next)) return together(cell, next) ? static_cast<unsigned>(gap) : 0U;
+      if (!image_.valid(next)) continue;
+      const bool before = behind >= gap && continues(cell - gap * stride, cell, next);
+      const bool after = room >= 2 * gap && continues(cell, next, next + gap * stride);
+      return together(cell, next, before || after) ? static_cast<unsigned>(gap) : 0U;
     }
     return 0U;
-  };
+  }
+
+ private:
+  // Small steps always hold together; steps as large as a surface seen at a grazing angle makes them, only where the slope goes on.
+  [[nodiscard]] bool together(int a, int b, bool slope_goes_on) const {
+    constexpr double kGrazingStep = 20.0;  // tan 87 degrees
+    const Eigen::Vector3f step = image_[b] - image_[a];
+    const double lateral = std::hypot(step.x(), step.y());
+    const double depth = std::abs(step.z());
+    if (depth <= options_.largest_depth_step * lateral + 4.0 * options_.plane_sigma) return true;
+    return slope_goes_on && depth <= kGrazingStep * lateral;
+  }
+
+  // Three cells in a row whose two steps in depth agree.
+  [[nodiscard]] bool continues(int a, int b, int c) const {
+    if (!image_.valid(a) || !image_.valid(b) || !image_.valid(c)) return false;
+    const double first = image_[b].z() - image_[a].z();
+    const double second = image_[c].z() - image_[b].z();
+    return std::abs(second - first) <= 4.0 * options_.plane_sigma + 0.15 * std::min(std::abs(first), std::abs(second));
+  }
+
+  const RangeImage& image_;
+  const SegmentationOptions& options_;
+};
+
+}  // namespace
+
+CellConnectivity::CellConnectivity(const RangeImage& image, const SegmentationOptions& options)
+    : columns_(image.columns), bits_(static_cast<std::size_t>(image.size()), 0) {
+  const StepJudge judge(image, options);
   for (int row = 0; row < image.rows; ++row) {
     for (int column = 0; column < image.columns; ++column) {
       const int cell = image.cell(row, column);
       if (!image.valid(cell)) continue;
-      const unsigned across = gap_to_next(cell, 1, image.columns - 1 - column);
-      const unsigned below = gap_to_next(cell, image.columns, image.rows - 1 - row);
+      const unsigned across = judge.gap_to_next(cell, 1, image.columns - 1 - column, column);
+      const unsigned below = judge.gap_to_next(cell, image.columns, image.rows - 1 - row, row);
       bits_[static_cast<std::size_t>(cell)] = static_cast<unsigned char>(across | (below << 2));
     }
   }

@@ -19,17 +19,27 @@ PlaneAxes axes_of(const Eigen::Vector3d& normal) {
   return {u, normal.cross(u)};
 }
 
-// Where the ray of a cell meets the region's plane: the data point without the noise along its ray.
+// A cell's patch of the region's plane.
 struct Footprint {
   Eigen::Vector3d point;
-  double area;  // of the cell on the plane. Unit: mm^2.
+  double area;  // Unit: mm^2.
 };
 
-Footprint footprint(const Region& region, const PinholeCamera& camera, int cell) {
+// Where the ray of a cell meets the plane: the data point without the noise along its ray. Rays that graze the plane (beyond
+// 84 degrees: only scraps of a few cells have such planes) meet it nowhere sensible; there the data point itself is taken.
+Footprint footprint(const Region& region, const RangeImage& image, const PinholeCamera& camera, int cell) {
+  constexpr double kSmallestCosine = 0.1;
   const Eigen::Vector3d ray = camera.ray(cell / camera.columns, cell % camera.columns);
-  const double depth = region.offset / region.normal.dot(ray);
-  // The plane's area element over the image plane is depth^3 / |offset|.
-  return {depth * ray, depth * depth * depth / (std::abs(region.offset) * camera.fx * camera.fy)};
+  const double slope = -region.normal.dot(ray);
+  const double least_slope = kSmallestCosine * ray.norm();
+  Eigen::Vector3d point = image[cell].cast<double>();
+  if (slope >= least_slope) {
+    point = (-region.offset / slope) * ray;
+  } else {
+    point -= (region.normal.dot(point) - region.offset) * region.normal;
+  }
+  // The area element of a plane over the grid is depth^2 / (slope fx fy).
+  return {point, point.z() * point.z() / (std::max(slope, least_slope) * camera.fx * camera.fy)};
 }
 
 // Andrew's monotone chain; counter-clockwise, no collinear points.
@@ -76,14 +86,14 @@ struct PatchMoments {
 
 }  // namespace
 
-DescribedRegion describe(Region region, const PinholeCamera& camera) {
+DescribedRegion describe(Region region, const RangeImage& image, const PinholeCamera& camera) {
   const PlaneAxes axes = axes_of(region.normal);
   const Eigen::Vector3d origin = region.offset * region.normal;
   PatchMoments moments;
   std::vector<Eigen::Vector2d> points;
   points.reserve(region.cells.size());
   for (const int cell : region.cells) {
-    const Footprint foot = footprint(region, camera, cell);
+    const Footprint foot = footprint(region, image, camera, cell);
     const Eigen::Vector2d p(axes.u.dot(foot.point - origin), axes.v.dot(foot.point - origin));
     moments.area += foot.area;
     moments.sum += foot.area * p;
@@ -109,7 +119,7 @@ DescribedRegion describe(Region region, const PinholeCamera& camera) {
 std::vector<DescribedRegion> extract_regions(const RangeImage& image, const PinholeCamera& camera,
                                              const SegmentationOptions& options) {
   std::vector<DescribedRegion> described;
-  for (Region& region : segment(image, options)) described.push_back(describe(std::move(region), camera));
+  for (Region& region : segment(image, options)) described.push_back(describe(std::move(region), image, camera));
   return described;
 }
 

@@ -29,7 +29,7 @@ struct DescribedRegion {
 
 // Area: sum of the cells' footprints on the fitted plane. Second moments: square roots of the eigenvalues of the patch's
 // covariance in its plane. Max diameter: of the convex hull. Camera: of the image (gives each cell its footprint).
-[[nodiscard]] DescribedRegion describe(Region region, const PinholeCamera& camera);
+[[nodiscard]] DescribedRegion describe(Region region, const RangeImage& image, const PinholeCamera& camera);
 
 // segment() and describe() together: what both programs call.
 [[nodiscard]] std::vector<DescribedRegion> extract_regions(const RangeImage& image, const PinholeCamera& camera,

@@ -17,7 +17,7 @@ struct SegmentationOptions {
   double grow_tolerance = 4.0;       // a cell joins a region within this many plane_sigma of its plane. Limit: > 1.
   int seed_block = 3;                // side of the square patches growing starts from. Unit: cells. Limit: 2 to 16.
   int smallest_region = 12;          // regions of fewer cells are dropped. Unit: cells. Limit: >= 3.
-  double largest_depth_step = 4.0;   // neighbouring cells farther apart than this, in units of the cell spacing, are not connected. Limit: > 1.
+  double largest_depth_step = 4.0;   // neighbouring cells farther apart in depth than this many cell spacings are connected only where the slope goes on. Limit: > 1.
 };
 
 bool operator==(const SegmentationOptions& a, const SegmentationOptions& b);
