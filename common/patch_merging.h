@@ -12,26 +12,35 @@
 
 namespace foresight {
 
-// Which cells hold together with their right and lower neighbours (both valid, no depth step between).
+// Which cells hold together: neighbours in a row or a column, both valid, no depth step between. A single cell without
+// data in between is bridged, because scanners drop single cells and whole columns of a surface.
 class CellConnectivity {
  public:
   CellConnectivity(const RangeImage& image, const SegmentationOptions& options);
-  [[nodiscard]] bool right(int cell) const { return (bits_[static_cast<std::size_t>(cell)] & 1U) != 0; }
-  [[nodiscard]] bool down(int cell) const { return (bits_[static_cast<std::size_t>(cell)] & 2U) != 0; }
+
+  // The connected cell to the right of or below a cell, or -1.
+  [[nodiscard]] int right(int cell) const { return step(cell, 0, 1); }
+  [[nodiscard]] int down(int cell) const { return step(cell, 2, columns_); }
 
   // Calls visit(neighbour) for each of the up to four connected neighbours.
   template <typename Visit>
   void for_each_neighbour(int cell, Visit&& visit) const {
-    const int column = cell % columns_;
-    if (right(cell)) visit(cell + 1);
-    if (down(cell)) visit(cell + columns_);
-    if (column > 0 && right(cell - 1)) visit(cell - 1);
-    if (cell >= columns_ && down(cell - columns_)) visit(cell - columns_);
+    if (const int next = right(cell); next >= 0) visit(next);
+    if (const int next = down(cell); next >= 0) visit(next);
+    for (int gap = 1; gap <= 2; ++gap) {
+      if (cell % columns_ >= gap && right(cell - gap) == cell) visit(cell - gap);
+      if (cell >= gap * columns_ && down(cell - gap * columns_) == cell) visit(cell - gap * columns_);
+    }
   }
 
  private:
+  [[nodiscard]] int step(int cell, int shift, int stride) const {
+    const int gap = (bits_[static_cast<std::size_t>(cell)] >> shift) & 3;
+    return gap == 0 ? -1 : cell + gap * stride;
+  }
+
   int columns_;
-  std::vector<unsigned char> bits_;
+  std::vector<unsigned char> bits_;  // bits 0-1: cells to the right neighbour, 0 = none; bits 2-3: the same downwards
 };
 
 // Merges patches of block x block cells among the cells of label 0, until no pair fits one plane within the merge
@@ -39,5 +48,10 @@ class CellConnectivity {
 [[nodiscard]] std::vector<std::vector<int>> merge_patches(const RangeImage& image, const CellConnectivity& connectivity,
                                                           const std::vector<int>& labels, int block, int fewest_cells,
                                                           const SegmentationOptions& options);
+
+// Merges touching regions of a label image (0 = none) that fit one plane within the merge tolerance: pieces of one face that
+// grew from apart. Every label that occurs must stand for at least three cells.
+void merge_regions(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
+                   std::vector<int>& labels);
 
 }  // namespace foresight

@@ -143,6 +143,10 @@ void extract_round(Growth& growth, int block) {
     refit(growth);
   }
   keep_only(growth, connected_pieces(growth));
+  if (growth.planes.empty()) return;
+  merge_regions(growth.image, growth.connectivity, growth.options, growth.labels);
+  refit(growth);
+  keep_only(growth, connected_pieces(growth));
 }
 
 Region make_region(const RangeImage& image, std::vector<int> cells) {
@@ -182,7 +186,8 @@ SegmentationOptions segmentation_options_for(const SensorModel& sensor) {
   // The normal of a block of b x b cells is known to about sigma sqrt(12) / (b^2 cell) radians; seeds want 0.1 or better.
   const double block = std::sqrt(options.plane_sigma * std::sqrt(12.0) / (0.1 * cell));
   options.seed_block = std::clamp(static_cast<int>(std::ceil(block)), 3, 8);
-  options.smallest_region = std::max(12, options.seed_block * options.seed_block);
+  // Three such blocks make a plane whose normal is worth matching.
+  options.smallest_region = std::max(12, static_cast<int>(std::ceil(3.0 * block * block)));
   return options;
 }
 

@@ -13,8 +13,8 @@ namespace foresight {
 
 struct SegmentationOptions {
   double plane_sigma = 0.1;          // standard deviation of a data point about its plane. Unit: mm. Limit: > 0.
-  double merge_tolerance = 1.5;      // two patches are one plane while the rms of their common fit is below this many plane_sigma. Limit: > 1.
-  double grow_tolerance = 3.0;       // a cell joins a region within this many plane_sigma of its plane. Limit: > 1.
+  double merge_tolerance = 2.5;      // patches are one plane while neither is farther than this many plane_sigma (rms) from their common fit. Limit: > 1.
+  double grow_tolerance = 4.0;       // a cell joins a region within this many plane_sigma of its plane. Limit: > 1.
   int seed_block = 3;                // side of the square patches growing starts from. Unit: cells. Limit: 2 to 16.
   int smallest_region = 12;          // regions of fewer cells are dropped. Unit: cells. Limit: >= 3.
   double largest_depth_step = 4.0;   // neighbouring cells farther apart than this, in units of the cell spacing, are not connected. Limit: > 1.

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include <Eigen/Geometry>
+
 #include "common/errors.h"
 
 namespace foresight {

@@ -7,7 +7,8 @@
 
 namespace foresight {
 
-// Same content, same bytes.
+// Same content, same bytes. Throws InputError when the name of a model or of its CAD file is not UTF-8, or when a
+// model takes more than 2 GB.
 [[nodiscard]] std::string encode_database(const CompiledDatabase& database);
 
 }  // namespace foresight

@@ -1,10 +1,9 @@
 #include "runtime/localization.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <utility>
-
-#include <Eigen/Geometry>
 
 #include "runtime/robust_loss.h"
 

@@ -1,5 +1,6 @@
 #include "runtime/pose_file.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <map>
 #include <vector>
 
 #include "common/camera.h"
@@ -25,9 +26,25 @@ inline Eigen::Vector3d box_half_size() { return 0.5 * kBoxSpacing * kBoxCells.ca
 // Face 2 * axis looks along -axis, face 2 * axis + 1 along +axis.
 inline Eigen::Vector3d box_normal(int face) { return (face % 2 == 1 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(face / 2); }
 
+// Neighbours of the point at a place in the grid: those one spacing away along an axis.
+inline std::vector<int> box_neighbours(const Eigen::Vector3i& at, const std::map<std::array<int, 3>, int>& index) {
+  std::vector<int> neighbours;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int step : {-1, 1}) {
+      std::array<int, 3> place{at.x(), at.y(), at.z()};
+      place[static_cast<std::size_t>(axis)] += step;
+      const auto found = index.find(place);
+      if (found != index.end()) neighbours.push_back(found->second);
+    }
+  }
+  std::sort(neighbours.begin(), neighbours.end());
+  return neighbours;
+}
+
 // The points of a grid of kBoxSpacing on the surface: points on edges and corners belong to two and three faces.
 inline std::vector<TemplatePoint> box_points() {
   std::vector<TemplatePoint> points;
+  std::map<std::array<int, 3>, int> index;
   for (int x = 0; x <= kBoxCells.x(); ++x) {
     for (int y = 0; y <= kBoxCells.y(); ++y) {
       for (int z = 0; z <= kBoxCells.z(); ++z) {
@@ -40,9 +57,13 @@ inline std::vector<TemplatePoint> box_points() {
         if (point.faces.empty()) continue;
         point.position = (kBoxCentre - box_half_size() + kBoxSpacing * at.cast<double>()).cast<float>();
         point.normal = box_normal(point.faces.front()).cast<float>();
+        index[{x, y, z}] = static_cast<int>(points.size());
         points.push_back(point);
       }
     }
+  }
+  for (const auto& [place, i] : index) {
+    points[static_cast<std::size_t>(i)].neighbours = box_neighbours({place[0], place[1], place[2]}, index);
   }
   return points;
 }
@@ -56,15 +77,6 @@ inline CompiledModel box_model() {
   model.faces.resize(6);
   model.surface.spacing = kBoxSpacing;
   model.surface.points = box_points();
-  std::vector<TemplatePoint>& points = model.surface.points;
-  for (TemplatePoint& point : points) {
-    for (std::size_t j = 0; j < points.size(); ++j) {
-      const float distance = (points[j].position - point.position).norm();
-      if (distance > 0.0F && distance < 1.01F * static_cast<float>(kBoxSpacing)) {
-        point.neighbours.push_back(static_cast<int>(j));
-      }
-    }
-  }
   const ViewingSphere sphere(kAspectCells);
   for (int cell = 0; cell < kAspectCells; ++cell) {
     for (int face = 0; face < 6; ++face) {

@@ -138,6 +138,13 @@ TEST(HighestConfidenceFirst, commits_matches_without_any_confidence) {
   EXPECT_EQ(highest_confidence_first(field), (std::vector<Label>{kOff, kOff}));
 }
 
+TEST(HighestConfidenceFirst, commits_the_undecided_even_behind_a_decided_match_without_confidence) {
+  // Match 0 stays at zero stability once decided. Were it taken for the end, 1 and 2 would never turn each other ON.
+  HypothesisField field = independent_field({{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}});
+  field.supports = {{}, {2}, {1}};
+  EXPECT_EQ(highest_confidence_first(field), (std::vector<Label>{kOff, kOn, kOn}));
+}
+
 TEST(HighestConfidenceFirst, lets_mutual_support_win_over_a_lone_contradiction) {
   // Regions 0, 1, 2 each with the match of one model (0, 2, 4), all consistent, and a rival (1, 3, 5) with a better
   // unary energy but no support, as in Fig. 3. The rivals weigh against: too few contradict to hold them.
@@ -190,6 +197,18 @@ TEST(HighestConfidenceFirst, equals_its_definition_without_heap_and_counters) {
   for (int trial = 0; trial < 100; ++trial) {
     const auto field = random_field(random, random.integer(1, 60), random.integer(1, 12), random.uniform(0.0, 0.5));
     EXPECT_EQ(highest_confidence_first(field), SlowHcf(field).labels());
+  }
+}
+
+TEST(HighestConfidenceFirst, does_not_depend_on_the_unit_of_energy) {
+  Random random(6);
+  const double unit = std::ldexp(1.0, -20);  // a power of two scales without rounding
+  for (int trial = 0; trial < 50; ++trial) {
+    auto field = random_field(random, 60, random.integer(2, 12), random.uniform(0.0, 0.5));
+    const auto labels = highest_confidence_first(field);
+    for (auto& unary : field.unary) unary = {unit * unary[kOff], unit * unary[kOn]};
+    field.potentials = {-60.0 * unit, 40.0 * unit, 60.0 * unit, -10.0 * unit, PriorSign::minus_log};
+    EXPECT_EQ(highest_confidence_first(field), labels);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "runtime/localization.h"
 #include "tests/runtime/box_scene.h"
 
