@@ -19,9 +19,9 @@ std::string quoted(const std::string& cell) {
 
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string line;
-  for (const std::string& cell : cells) {
-    if (!line.empty()) line += ',';
-    line += quoted(cell);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) line += ',';
+    line += quoted(cells[i]);
   }
   return line + "\n";
 }

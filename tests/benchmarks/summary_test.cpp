@@ -67,6 +67,7 @@ TEST(Table, rows_are_as_wide_as_the_header) {
 }
 
 TEST(Table, quotes_what_csv_would_misread) {
+  EXPECT_EQ(to_csv({{"a", "b"}, {{"", "1"}}}), "a,b\n,1\n");
   EXPECT_EQ(to_csv({{"a", "b"}, {{"x,y", "say \"1\""}}}), "a,b\n\"x,y\",\"say \"\"1\"\"\"\n");
 }
 
