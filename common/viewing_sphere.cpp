@@ -1,5 +1,6 @@
 #include "common/viewing_sphere.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 

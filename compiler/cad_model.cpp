@@ -1,8 +1,8 @@
 #include "compiler/cad_model.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <OpenMesh/Core/IO/MeshIO.hh>
+#include <OpenMesh/Core/IO/reader/OFFReader.hh>
+#include <OpenMesh/Core/IO/reader/PLYReader.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 #include <algorithm>
@@ -13,11 +13,13 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <numeric>
 #include <sstream>
+#include <stdexcept>
 
 #include "common/errors.h"
-#include "compiler/mesh_bodies.h"
+#include "compiler/solid_check.h"
 #include "compiler/triangle_mesh.h"
 
 namespace foresight {
@@ -30,7 +32,8 @@ using Eigen::Vector3d;
 class SoupImporter : public OpenMesh::IO::ImporterT<OpenMesh::PolyMesh_ArrayKernelT<>> {
  public:
   using Base = OpenMesh::IO::ImporterT<OpenMesh::PolyMesh_ArrayKernelT<>>;
-  SoupImporter() : Base(unused_) {}
+  // most: more vertices or faces than this the file cannot hold, whatever its header promises.
+  explicit SoupImporter(std::size_t most) : Base(unused_), most_(most) {}
 
   OpenMesh::VertexHandle add_vertex(const OpenMesh::Vec3f& point) override {
     return add(Vector3d(point[0], point[1], point[2]));
@@ -44,7 +47,7 @@ class SoupImporter : public OpenMesh::IO::ImporterT<OpenMesh::PolyMesh_ArrayKern
       mesh.vertices[static_cast<std::size_t>(vertex.idx())] = Vector3d(point[0], point[1], point[2]);
   }
   OpenMesh::FaceHandle add_face(const VHandles& corners) override {
-    ++faces_;
+    if (++faces_ > most_) throw std::length_error("more faces than the file has bytes");
     if (!std::all_of(corners.begin(), corners.end(), [this](auto v) { return is_vertex(v); })) {
       ++faces_without_vertices;
       return OpenMesh::FaceHandle();
@@ -69,6 +72,7 @@ class SoupImporter : public OpenMesh::IO::ImporterT<OpenMesh::PolyMesh_ArrayKern
 
  private:
   OpenMesh::VertexHandle add(const Vector3d& point) {
+    if (mesh.vertices.size() >= most_) throw std::length_error("more vertices than the file has bytes");
     mesh.vertices.push_back(point);
     return OpenMesh::VertexHandle(static_cast<int>(mesh.vertices.size()) - 1);
   }
@@ -77,23 +81,31 @@ class SoupImporter : public OpenMesh::IO::ImporterT<OpenMesh::PolyMesh_ArrayKern
   }
 
   OpenMesh::PolyMesh_ArrayKernelT<> unused_;
+  std::size_t most_;
   std::size_t faces_ = 0;
 };
 
-std::string count_of(std::size_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-std::string position_text(const Vector3d& p) {
+// Two significant digits at least, never an exponent for the lengths objects have.
+std::string two_digits(double value) {
   std::ostringstream text;
-  text << "(" << p.x() << ", " << p.y() << ", " << p.z() << ")";
+  if (value >= 10.0 && value < 1e15) {
+    text << static_cast<std::int64_t>(std::llround(value));
+  } else {
+    text.precision(2);
+    text << value;
+  }
   return text.str();
 }
 
-void check_file(const std::string& file) {
+std::string lower_extension(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void check_file(const std::string& file) {
+  const std::string extension = lower_extension(file);
   if (!std::filesystem::exists(file)) throw InputError(file, "there is no such file", "check the path");
   if (std::filesystem::is_directory(file)) throw InputError(file, "is a folder", "name a CAD file in it");
   if (extension != ".obj" && extension != ".stl" && extension != ".ply" && extension != ".off") {
@@ -103,22 +115,56 @@ void check_file(const std::string& file) {
   if (std::filesystem::file_size(file) == 0) throw InputError(file, "is empty", "export it again");
 }
 
+// OFF as OpenMesh takes it: without comments.
+std::string without_comments(std::istream& text) {
+  std::string kept;
+  for (std::string line; std::getline(text, line);) {
+    line.erase(std::min(line.find('#'), line.size()));
+    if (line.find_first_not_of(" \t\r") != std::string::npos) kept += line + "\n";
+  }
+  return kept;
+}
+
+// OpenMesh's OFF and PLY readers do not look for the end of the file between the corners of a face: there a stream
+// that throws stops them. The other two read line by line.
+bool read_with_openmesh(const std::string& file, const std::string& extension, SoupImporter& importer) {
+  OpenMesh::IO::Options options;
+  if (extension != ".off" && extension != ".ply") return OpenMesh::IO::IOManager().read(file, importer, options);
+  OpenMesh::IO::BaseReader& reader = extension == ".off"
+                                         ? static_cast<OpenMesh::IO::BaseReader&>(OpenMesh::IO::OFFReader())
+                                         : OpenMesh::IO::PLYReader();
+  if (!reader.can_u_read(file)) return false;
+  std::ifstream content(file, std::ios::binary);
+  std::string first_line;
+  std::getline(content, first_line);
+  content.clear();
+  content.seekg(0);
+  const bool text_off = extension == ".off" && first_line.find("BINARY") == std::string::npos;
+  std::istringstream text(text_off ? without_comments(content) : std::string());
+  std::istream& stream = text_off ? static_cast<std::istream&>(text) : content;
+  stream.exceptions(std::ios::failbit | std::ios::badbit);
+  return reader.read(stream, importer, options);
+}
+
 TriangleMesh read_soup(const std::string& file) {
+  static std::mutex one_reader;  // OpenMesh's readers are single objects with a state
+  const std::lock_guard lock(one_reader);
   omerr().disable();  // its messages name neither file nor mend
   omlog().disable();
-  SoupImporter importer;
-  OpenMesh::IO::Options options;
+  SoupImporter importer(std::filesystem::file_size(file));
   bool read = false;
   try {
-    read = OpenMesh::IO::IOManager().read(file, importer, options);
-  } catch (const std::exception&) {  // a damaged header can make a reader ask for more memory than there is
+    read = read_with_openmesh(file, lower_extension(file), importer);
+  } catch (const std::exception&) {  // the file ends too early, or its header promises more than it holds
     read = false;
   }
-  if (!read) throw InputError(file, "its content is damaged or not what its extension says", "export it again");
+  if (!read)
+    throw InputError(file, "its content is damaged, cut short or not what its extension says",
+                     "export it again, perhaps in another of the formats .obj, .stl, .ply, .off");
   if (importer.faces_without_vertices > 0) {
     throw InputError(file,
-                     count_of(static_cast<std::size_t>(importer.faces_without_vertices), "face refers", "faces refer") +
-                         " to vertices that are not in the file",
+                     std::to_string(importer.faces_without_vertices) +
+                         " of its faces name vertices that are not in the file or are not numbers",
                      "export it again");
   }
   for (std::size_t i = 0; i < importer.mesh.vertices.size(); ++i) {
@@ -128,116 +174,6 @@ TriangleMesh read_soup(const std::string& file) {
     }
   }
   return std::move(importer.mesh);
-}
-
-// Welds and drops what can be mended without changing the surface; says what it did.
-std::vector<std::string> clean(TriangleMesh& mesh) {
-  std::vector<std::string> repairs;
-  const auto note = [&repairs](int count, const std::string& verb, const std::string& one, const std::string& many) {
-    if (count > 0) repairs.push_back(verb + " " + count_of(static_cast<std::size_t>(count), one, many));
-  };
-  drop_unused_vertices(mesh);
-  note(weld_vertices(mesh, weld_tolerance(mesh)), "welded", "duplicate vertex", "duplicate vertices");
-  note(drop_degenerate_triangles(mesh), "dropped", "degenerate triangle", "degenerate triangles");
-  note(drop_duplicate_triangles(mesh), "dropped", "duplicate triangle", "duplicate triangles");
-  drop_unused_vertices(mesh);
-  return repairs;
-}
-
-bool is_flat(const TriangleMesh& mesh) {
-  Vector3d mean = Vector3d::Zero();
-  for (const Vector3d& v : mesh.vertices) mean += v / static_cast<double>(mesh.vertices.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vector3d& v : mesh.vertices) spread += (v - mean) * (v - mean).transpose();
-  const Vector3d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
-  return eigenvalues[0] <= 1e-12 * eigenvalues[2];
-}
-
-// True when a vertex lies in the middle of one of these edges. A bounded search: it only sharpens a message.
-bool has_t_junction(const TriangleMesh& mesh, const std::vector<EdgeUse>& open) {
-  const std::size_t searched = std::min<std::size_t>(open.size(), 2000);
-  const double tolerance = 10.0 * weld_tolerance(mesh);
-  for (std::size_t e = 0; e < searched; ++e) {
-    const Vector3d& a = mesh.vertices[static_cast<std::size_t>(open[e].low)];
-    const Vector3d along = mesh.vertices[static_cast<std::size_t>(open[e].high)] - a;
-    const double length = along.norm();
-    for (std::size_t o = 0; o < searched; ++o) {
-      const Vector3d to = mesh.vertices[static_cast<std::size_t>(open[o].low)] - a;
-      const double place = to.dot(along) / length;
-      if (place > tolerance && place < length - tolerance && (to - along * (place / length)).norm() <= tolerance)
-        return true;
-    }
-  }
-  return false;
-}
-
-// Every edge must have exactly two triangles.
-void check_closed(const std::string& file, const TriangleMesh& mesh) {
-  std::vector<EdgeUse> open, crowded;
-  const std::vector<EdgeUse> uses = edge_uses(mesh.triangles);
-  for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
-    while (end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high) ++end;
-    if (end - i == 1) open.push_back(uses[i]);
-    if (end - i > 2) crowded.push_back(uses[i]);
-  }
-  const auto middle = [&mesh](const EdgeUse& edge) {
-    const Vector3d sum =
-        mesh.vertices[static_cast<std::size_t>(edge.low)] + mesh.vertices[static_cast<std::size_t>(edge.high)];
-    return position_text(0.5 * sum);
-  };
-  std::string cause, mend;
-  if (!open.empty()) {
-    const bool split = has_t_junction(mesh, open);
-    cause = "the surface is not closed: " + count_of(open.size(), "open edge", "open edges") + ", the first at " +
-            middle(open.front()) + " in the file's unit" +
-            (split ? "; some have a vertex in their middle (T-junctions) that the neighbouring triangle does not share"
-                   : "");
-    mend = split ? "let the CAD program split the triangles at these vertices when it exports"
-                 : "close the holes in the CAD program";
-  }
-  if (!crowded.empty()) {
-    cause += (cause.empty() ? "the surface is not manifold: " : "; and ") +
-             count_of(crowded.size(), "edge is", "edges are") +
-             " shared by more than two triangles (non-manifold), the first at " + middle(crowded.front()) +
-             " in the file's unit";
-    if (mend.empty()) mend = "join touching bodies, or leave a gap between them, in the CAD program";
-  }
-  if (!cause.empty()) throw InputError(file, cause, mend);
-}
-
-// Turns all triangles so that they face outward, those of voids into the void; says what it did.
-std::vector<std::string> turn_outward(const std::string& file, TriangleMesh& mesh) {
-  const std::optional<Bodies> bodies = orient_bodies(mesh);
-  if (!bodies) {
-    throw InputError(file, "its triangles cannot be turned to agree on one outside (the surface is one-sided)",
-                     "repair the surface in the CAD program");
-  }
-  std::vector<std::string> repairs;
-  if (bodies->turned > 0) {
-    repairs.push_back("turned " +
-                      count_of(static_cast<std::size_t>(bodies->turned), "triangle that faces", "triangles that face") +
-                      " another way than the neighbours");
-  }
-  const std::vector<double> volumes = body_volumes(mesh, *bodies);
-  const std::vector<int> depths = nesting_depths(mesh, *bodies);
-  const double tolerance = weld_tolerance(mesh);
-  std::size_t turned = 0, voids = 0;
-  for (int b = 0; b < bodies->count; ++b) {
-    const auto body = static_cast<std::size_t>(b);
-    if (std::abs(volumes[body]) <= tolerance * tolerance * tolerance) {
-      throw InputError(file, "a body of it has no volume", "give it a thickness or delete it in the CAD program");
-    }
-    const bool is_void = depths[body] % 2 == 1;
-    if ((volumes[body] > 0.0) != is_void) continue;
-    turn_body(mesh, *bodies, b);
-    ++(is_void ? voids : turned);
-  }
-  if (turned > 0) repairs.push_back("turned " + count_of(turned, "body that was", "bodies that were") + " inside out");
-  if (voids > 0) {
-    repairs.push_back("took " + count_of(voids, "body", "bodies") + " inside another for " +
-                      (voids == 1 ? "a void" : "voids"));
-  }
-  return repairs;
 }
 
 }  // namespace
@@ -274,16 +210,10 @@ CadModel read_cad_model(const std::string& file, const CadReadOptions& options) 
   check_file(file);
   TriangleMesh mesh = read_soup(file);
   if (mesh.triangles.empty())
-    throw InputError(file, "there are no triangles in it", "export the surface of the object");
+    throw InputError(file, "no triangles could be read from it", "export the surface of the object again");
   CadModel model;
   model.name = std::filesystem::path(file).stem().string();
-  model.repairs = clean(mesh);
-  if (mesh.triangles.empty() || is_flat(mesh)) {
-    throw InputError(file, "the object is flat: it has no volume", "give it a thickness in the CAD program");
-  }
-  check_closed(file, mesh);
-  const std::vector<std::string> turned = turn_outward(file, mesh);
-  model.repairs.insert(model.repairs.end(), turned.begin(), turned.end());
+  model.repairs = check_solid(file, mesh);
   model.vertices = std::move(mesh.vertices);
   for (Vector3d& v : model.vertices) v *= options.unit_mm;
   model.triangles = std::move(mesh.triangles);
@@ -304,12 +234,14 @@ void check_size(const CadModel& model, const std::string& file, double unit_mm, 
   };
   if (fits(diameter)) return;
   std::ostringstream cause, mend;
-  cause.precision(2);
-  cause << "the object is " << (diameter >= 100.0 ? std::round(diameter) : diameter) << " mm in diameter, "
-        << 100.0 * diameter / field_of_view << " % of the field of view (" << std::round(field_of_view) << " mm)";
+  cause << "the object is " << two_digits(diameter) << " mm in diameter, "
+        << two_digits(100.0 * diameter / field_of_view) << " % of the field of view (" << std::round(field_of_view)
+        << " mm)";
   for (const Unit& unit : units) {
-    if (!fits(diameter / unit_mm * unit.mm)) continue;
-    mend << (mend.tellp() > 0 ? ", or if in " : "if the file is in ") << unit.name << ", pass --unit " << unit.flag;
+    const double length = diameter / unit_mm * unit.mm;
+    if (!fits(length)) continue;
+    mend << (mend.tellp() > 0 ? ", or if in " : "if the file is in ") << unit.name << ", pass --unit " << unit.flag
+         << " (" << two_digits(length) << " mm)";
   }
   if (mend.tellp() <= 0) mend << "scale the object, or use a sensor whose field of view suits it";
   throw InputError(file, cause.str(), mend.str());
