@@ -43,7 +43,8 @@ std::vector<ScanTruth> read_truth_file(const std::string& file) {
   const std::string text = read_whole_file(file);
   try {
     std::vector<ScanTruth> scans;
-    for (const auto& entry : nlohmann::json::parse(text).at("scans")) scans.push_back(scan_of(entry, file));
+    const nlohmann::json document = nlohmann::json::parse(text);
+    for (const auto& entry : document.at("scans")) scans.push_back(scan_of(entry, file));
     return scans;
   } catch (const nlohmann::json::exception& error) {
     throw InputError(file, std::string("not a truth file: ") + error.what(),
