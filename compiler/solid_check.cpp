@@ -41,11 +41,13 @@ bool has_t_junction(const TriangleMesh& mesh, const std::vector<EdgeUse>& open) 
     const Vector3d& a = mesh.vertices[static_cast<std::size_t>(open[e].low)];
     const Vector3d along = mesh.vertices[static_cast<std::size_t>(open[e].high)] - a;
     const double length = along.norm();
-    for (std::size_t o = 0; o < searched; ++o) {
-      const Vector3d to = mesh.vertices[static_cast<std::size_t>(open[o].low)] - a;
+    const auto holds = [&](int vertex) {
+      const Vector3d to = mesh.vertices[static_cast<std::size_t>(vertex)] - a;
       const double place = to.dot(along) / length;
-      if (place > tolerance && place < length - tolerance && (to - along * (place / length)).norm() <= tolerance)
-        return true;
+      return place > tolerance && place < length - tolerance && (to - along * (place / length)).norm() <= tolerance;
+    };
+    for (std::size_t o = 0; o < searched; ++o) {
+      if (holds(open[o].low) || holds(open[o].high)) return true;
     }
   }
   return false;

@@ -246,7 +246,7 @@ std::vector<int> faces_of_aspect(const CadModel& model, const SurfaceTemplate& s
 }  // namespace
 
 SurfaceTemplate build_surface_template(const CadModel& model, const SurfaceTemplateOptions& options) {
-  assert(options.spacing > 0.0 && options.neighbour_radius > options.spacing && options.edge_tolerance >= 0.0);
+  assert(options.spacing > 0.0 && options.neighbour_radius > options.spacing && options.edge_tolerance > 0.0);
   assert(options.visible_share > 0.0 && options.visible_share <= 1.0);
   const std::vector<Vector3d> longest = longest_edges(model);
   PointLayer layer(model, options);
