@@ -1,0 +1,32 @@
+// The experiments, each a subcommand in a file of its own.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <functional>
+#include <string>
+
+#include "benchmarks/experiment.h"
+
+namespace foresight {
+
+// A subcommand and what it runs; the options live as long as `run`.
+struct Experiment {
+  CLI::App* command = nullptr;
+  std::function<int()> run;  // the exit code; throws what common/errors.h lists
+};
+
+[[nodiscard]] Experiment add_synthetic(CLI::App& app);     // Section VI.C.1
+[[nodiscard]] Experiment add_scanner(CLI::App& app);       // Section VI.C.2
+[[nodiscard]] Experiment add_clutter(CLI::App& app);       // Section VI.C.2, several objects
+[[nodiscard]] Experiment add_localization(CLI::App& app);  // Table I
+[[nodiscard]] Experiment add_real(CLI::App& app);          // real scans
+
+// Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
+void add_common_options(CLI::App& command, ExperimentOptions& options, int n);
+void add_object_options(CLI::App& command,
+                        ExperimentOptions& options);  // --cad, --unit, --sensor, --compile-sensor, --database
+void add_method_options(CLI::App& command, RecognizeOptions& method);  // --pruning, --prior-sign, --loss
+
+}  // namespace foresight

@@ -1,0 +1,108 @@
+#include "benchmarks/pose_scoring.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace foresight {
+namespace {
+
+struct Pairing {
+  std::size_t report = 0;
+  std::size_t truth = 0;
+  double distance = 0.0;  // MSSD to the nearest equally good pose
+};
+
+// All pairs of one object's reports and instances, nearest first.
+std::vector<Pairing> pairings(const std::vector<ScoredObject>& objects, const std::vector<TrueObject>& truth,
+                              const std::vector<ReportedObject>& reported) {
+  std::vector<Pairing> pairs;
+  for (std::size_t r = 0; r < reported.size(); ++r) {
+    for (std::size_t t = 0; t < truth.size(); ++t) {
+      if (reported[r].object != truth[t].object) continue;
+      const ScoredObject& object = objects[static_cast<std::size_t>(truth[t].object)];
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Pose& pose : truth[t].poses)
+        nearest = std::min(nearest, mssd(object, reported[r].T_sensor_model, pose));
+      pairs.push_back({r, t, nearest});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pairing& a, const Pairing& b) { return a.distance < b.distance; });
+  return pairs;
+}
+
+// Whether each true object is reported whatever its pose: the paper's acceptance. Any report of its object will do,
+// once.
+std::vector<bool> named_objects(const std::vector<TrueObject>& truth, const std::vector<ReportedObject>& reported,
+                                const std::vector<Pairing>& pairs) {
+  std::vector<bool> named(truth.size(), false);
+  std::vector<bool> used(reported.size(), false);
+  for (const Pairing& pair : pairs) {
+    if (named[pair.truth] || used[pair.report]) continue;
+    named[pair.truth] = true;
+    used[pair.report] = true;
+  }
+  return named;
+}
+
+// The verdict on a report that no instance took.
+Verdict verdict_alone(const std::vector<ScoredObject>& objects, const std::vector<ReportedObject>& reported,
+                      std::size_t report, const std::vector<Pairing>& pairs) {
+  const auto nearest =
+      std::find_if(pairs.begin(), pairs.end(), [&](const Pairing& pair) { return pair.report == report; });
+  if (nearest == pairs.end()) return Verdict::false_positive;
+  const ScoredObject& object = objects[static_cast<std::size_t>(reported[report].object)];
+  if (nearest->distance <= object.tolerance()) return Verdict::duplicate;
+  return nearest->distance > kPresentShare * object.diameter ? Verdict::false_positive : Verdict::wrong_pose;
+}
+
+}  // namespace
+
+double ScoredObject::tolerance() const { return std::max(kRightDistance, kRightShare * diameter); }
+
+ScoredObject scored_object(const CadModel& model) { return {model.vertices, find_symmetries(model), model.diameter()}; }
+
+double mssd(const ScoredObject& object, const Pose& reported, const Pose& truth) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Pose& symmetry : object.symmetries) {
+    const Pose symmetric = truth * symmetry;
+    double largest = 0.0;
+    for (const Eigen::Vector3d& vertex : object.vertices) {
+      largest = std::max(largest, (reported * vertex - symmetric * vertex).squaredNorm());
+      if (largest >= least) break;
+    }
+    least = std::min(least, largest);
+  }
+  return std::sqrt(least);
+}
+
+SceneVerdicts score_scene(const std::vector<ScoredObject>& objects, const std::vector<TrueObject>& truth,
+                          const std::vector<ReportedObject>& reported, const CannotTell& cannot_tell) {
+  const std::vector<Pairing> pairs = pairings(objects, truth, reported);
+  SceneVerdicts verdicts;
+  verdicts.reported.assign(reported.size(), Verdict::missed);
+  verdicts.truth.assign(truth.size(), Verdict::missed);
+  verdicts.named = named_objects(truth, reported, pairs);
+  const auto take = [&](Verdict verdict, const std::function<bool(const Pairing&)>& holds) {
+    for (const Pairing& pair : pairs) {
+      if (verdicts.reported[pair.report] != Verdict::missed || verdicts.truth[pair.truth] != Verdict::missed) continue;
+      if (!holds(pair)) continue;
+      verdicts.reported[pair.report] = verdict;
+      verdicts.truth[pair.truth] = verdict;
+    }
+  };
+  take(Verdict::right, [&](const Pairing& pair) {
+    return pair.distance <= objects[static_cast<std::size_t>(truth[pair.truth].object)].tolerance();
+  });
+  take(Verdict::indistinguishable, [&](const Pairing& pair) {
+    const TrueObject& instance = truth[pair.truth];
+    if (pair.distance <= objects[static_cast<std::size_t>(instance.object)].tolerance()) return false;
+    return cannot_tell && cannot_tell(instance.object, reported[pair.report].T_sensor_model, instance.poses.front());
+  });
+  for (std::size_t r = 0; r < reported.size(); ++r) {
+    if (verdicts.reported[r] == Verdict::missed) verdicts.reported[r] = verdict_alone(objects, reported, r, pairs);
+  }
+  return verdicts;
+}
+
+}  // namespace foresight

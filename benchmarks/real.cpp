@@ -1,0 +1,114 @@
+// Real structured-light scans of blocks with known poses (SegComp ABW): what the paper's Section VI.C.2 asks, on images
+// of its time.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "benchmarks/commands.h"
+#include "benchmarks/overlay.h"
+#include "benchmarks/truth_file.h"
+#include "common/errors.h"
+#include "common/scan_file.h"
+
+namespace foresight {
+namespace {
+
+std::string default_folder() {
+  const char* set = std::getenv("FORESIGHT_DATA");
+  return set != nullptr ? set : project_path("../shared/data");
+}
+
+std::vector<std::string> cad_files_in(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".obj") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  if (files.empty()) throw InputError(folder, "it holds no .obj file", "give a data folder with abw/models");
+  return files;
+}
+
+std::vector<TrueObject> truth_of(const ScanTruth& scan, const std::vector<CadModel>& models, const std::string& file) {
+  std::vector<TrueObject> truth;
+  for (const ScanTruth::Object& object : scan.objects) {
+    const auto model =
+        std::find_if(models.begin(), models.end(), [&](const CadModel& m) { return m.name == object.object; });
+    if (model == models.end())
+      throw InputError(file, "it names an object " + object.object + " without a model", "add the model to models/");
+    truth.push_back({static_cast<int>(model - models.begin()), object.poses, object.visible_fraction});
+  }
+  return truth;
+}
+
+// The truth thin and white, the reports in the colours of their objects.
+void write_overlay(const std::string& file, const RangeImage& image, const PinholeCamera& camera,
+                   const std::vector<CadModel>& models, const SceneRecord& record) {
+  Picture picture = shade(image);
+  const auto edges_of = [&](int object) {
+    const CadModel& model = models[static_cast<std::size_t>(object)];
+    return model_edges(model.vertices, model.triangles);
+  };
+  for (const ReportedObject& report : record.reported) {
+    draw_edges(picture, camera, edges_of(report.object), report.T_sensor_model,
+               {object_colour(report.object), 3, false});
+  }
+  for (const TrueObject& object : record.truth) {
+    draw_edges(picture, camera, edges_of(object.object), object.poses.front(), {{255, 255, 255}, 1, false});
+  }
+  write_picture(file, picture);
+}
+
+void run_real(ExperimentOptions options, const std::string& folder) {
+  if (options.cad_files.empty()) options.cad_files = cad_files_in(folder + "/models");
+  const SensorModel sensor =
+      sensor_of(options.sensor_file.empty() ? project_path("models/sensors/abw.textproto") : options.sensor_file);
+  const std::vector<CadModel> models = read_objects(options, sensor);
+  const std::vector<ScoredObject> objects = scored_objects(models);
+  const std::string truth_file = folder + "/truth.json";
+  const std::vector<ScanTruth> scans = read_truth_file(truth_file);
+  const Database database = database_of(
+      options, models, options.compile_sensor_file.empty() ? sensor : sensor_of(options.compile_sensor_file));
+  write_csv(options, "real", {});  // makes the folder, and tells now whether it can be written
+
+  std::vector<SceneRecord> records(scans.size());
+  run_in_parallel(options, "real", static_cast<int>(scans.size()), [&](int i) {
+    const ScanTruth& truth = scans[static_cast<std::size_t>(i)];
+    const Scan scan =
+        read_scan(folder + "/scans/" + truth.scan + ".png", {folder + "/camera_" + truth.camera + ".json", 1.0});
+    SensorModel used = sensor;
+    used.camera = *scan.camera;
+    records[static_cast<std::size_t>(i)] = recognize_and_score(
+        {models, objects, database, used, options.method}, truth.scan, scan.image, truth_of(truth, models, truth_file));
+    write_overlay(options.output + "/" + truth.scan + ".png", scan.image, used.camera, models,
+                  records[static_cast<std::size_t>(i)]);
+  });
+  std::vector<SummaryRow> rows = {summarize("visible >= 50 %", records, {0.5, 2.0}), summarize("all", records)};
+  write_results(options, "real", rows, records, models);
+}
+
+}  // namespace
+
+Experiment add_real(CLI::App& app) {
+  const auto options = std::make_shared<ExperimentOptions>();
+  const auto folder = std::make_shared<std::string>(default_folder());
+  CLI::App* command = app.add_subcommand(
+      "real", "Real scans of blocks with known poses, with a picture of each (skipped without the data)");
+  add_common_options(*command, *options, 0);
+  command->add_option("--data", *folder,
+                      "Data folder that holds abw/; FORESIGHT_DATA, or ../shared/data beside the checkout");
+  add_object_options(*command, *options);
+  add_method_options(*command, options->method);
+  return {command, [options, folder] {
+            if (!std::filesystem::exists(*folder + "/abw/truth.json")) {
+              std::cout << "real: skipped, there is no " << *folder
+                        << "/abw/truth.json; give the folder with --data or FORESIGHT_DATA\n";
+              return static_cast<int>(kExitDone);
+            }
+            run_real(*options, *folder + "/abw");
+            return static_cast<int>(kExitDone);
+          }};
+}
+
+}  // namespace foresight
