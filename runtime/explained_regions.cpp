@@ -1,31 +1,68 @@
 #include "runtime/explained_regions.h"
 
+#include <algorithm>
+
 #include "runtime/localization.h"
 
 namespace foresight {
+namespace {
 
-std::vector<int> explained_regions(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model,
-                                   const std::vector<DescribedRegion>& regions, const std::vector<int>& region_of_cell,
-                                   const NearestDataPoint& data, const ExplanationOptions& options) {
-  std::vector<double> covered(regions.size(), 0.0);
+// A visible template point in the sensor frame, with the normals of its faces (an edge point has several).
+struct PosedPoint {
+  Eigen::Vector3d position;
+  std::vector<Eigen::Vector3d> normals;
+};
+
+std::vector<PosedPoint> posed_points(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model) {
+  std::vector<PosedPoint> posed;
   for (const int i : visible_points(model, sphere, T_sensor_model)) {
     const TemplatePoint& point = model.surface.points[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d position = T_sensor_model * point.position.cast<double>();
-    const NearestDataPoint::Answer nearest = data.find(position.cast<float>());
-    const int label = region_of_cell[static_cast<std::size_t>(nearest.cell)];
-    if (label == 0 || nearest.distance > options.match_distance) continue;
-    const DescribedRegion& region = regions[static_cast<std::size_t>(label - 1)];
-    // A point on an edge has faces of several normals: any of them will do.
+    PosedPoint& added = posed.emplace_back();
+    added.position = T_sensor_model * point.position.cast<double>();
     for (const int face : point.faces) {
-      const Eigen::Vector3d normal = T_sensor_model.rotation * model.faces[static_cast<std::size_t>(face)].normal;
-      if (normal.dot(region.region.normal) < options.normal_cosine) continue;
-      covered[static_cast<std::size_t>(label - 1)] += model.surface.spacing * model.surface.spacing;
-      break;
+      added.normals.push_back(T_sensor_model.rotation * model.faces[static_cast<std::size_t>(face)].normal);
     }
   }
+  return posed;
+}
+
+std::vector<Eigen::Vector3d> agreeing_points(const std::vector<PosedPoint>& points, const Eigen::Vector3d& normal, double cosine) {
+  std::vector<Eigen::Vector3d> agreeing;
+  for (const PosedPoint& point : points) {
+    if (std::any_of(point.normals.begin(), point.normals.end(), [&](const auto& n) { return n.dot(normal) >= cosine; })) {
+      agreeing.push_back(point.position);
+    }
+  }
+  return agreeing;
+}
+
+double explained_share(const Region& region, const RangeImage& image, const std::vector<Eigen::Vector3d>& points,
+                       double reach, int most_samples) {
+  const std::size_t step = std::max<std::size_t>(1, region.cells.size() / static_cast<std::size_t>(most_samples));
+  int looked_at = 0;
+  int explained = 0;
+  for (std::size_t i = 0; i < region.cells.size(); i += step) {
+    const Eigen::Vector3d data = image[region.cells[i]].cast<double>();
+    ++looked_at;
+    explained += std::any_of(points.begin(), points.end(), [&](const auto& p) { return (p - data).squaredNorm() <= reach * reach; });
+  }
+  return static_cast<double>(explained) / looked_at;
+}
+
+}  // namespace
+
+std::vector<int> explained_regions(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model,
+                                   const RangeImage& image, const std::vector<DescribedRegion>& regions,
+                                   const ExplanationOptions& options) {
+  const std::vector<PosedPoint> points = posed_points(model, sphere, T_sensor_model);
+  // A point of the surface lies within one spacing of a template point.
+  const double reach = options.match_distance + model.surface.spacing;
   std::vector<int> explained;
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    if (covered[i] >= options.smallest_share * regions[i].attributes[kArea]) explained.push_back(static_cast<int>(i));
+    const auto agreeing = agreeing_points(points, regions[i].region.normal, options.normal_cosine);
+    if (explained_share(regions[i].region, image, agreeing, reach, options.most_samples) >= options.smallest_share) {
+      explained.push_back(static_cast<int>(i));
+    }
   }
   return explained;
 }

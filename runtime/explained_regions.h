@@ -5,24 +5,25 @@
 
 #include "common/compiled_model.h"
 #include "common/pose.h"
+#include "common/range_image.h"
 #include "common/region_attributes.h"
 #include "common/viewing_sphere.h"
-#include "runtime/nearest_data_point.h"
 
 namespace foresight {
 
 struct ExplanationOptions {
-  double match_distance = 4.0;   // as in verification. Unit: mm. Limit: > 0.
-  double normal_cosine = 0.8;    // a template point explains a region whose normal is within this cosine of its own
-  double smallest_share = 0.5;   // of the region's area that template points must cover, one spacing squared each. Limit: (0, 1].
+  double match_distance = 4.0;   // a data point this near to the template (beyond the template's own grain) is explained. Unit: mm. Limit: > 0.
+  double normal_cosine = 0.8;    // by a template point whose face has a normal within this cosine of the region's
+  double smallest_share = 0.5;   // of the region's data points. Limit: (0, 1].
+  int most_samples = 48;         // data points looked at in a region, evenly spread over its cells. Limit: >= 1.
 };
 
-// Ascending region indices. region_of_cell: label_image() of the regions (0 = none, i + 1 = region i).
+// Ascending region indices.
 // The paper drops hypotheses "which have regions in common with the recognized object"; read here as all the regions that
 // the accepted pose explains, not only the two or three that were matched.
 [[nodiscard]] std::vector<int> explained_regions(const CompiledModel& model, const ViewingSphere& sphere,
-                                                 const Pose& T_sensor_model, const std::vector<DescribedRegion>& regions,
-                                                 const std::vector<int>& region_of_cell, const NearestDataPoint& data,
+                                                 const Pose& T_sensor_model, const RangeImage& image,
+                                                 const std::vector<DescribedRegion>& regions,
                                                  const ExplanationOptions& options = {});
 
 }  // namespace foresight

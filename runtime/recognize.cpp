@@ -35,7 +35,6 @@ struct ScanContext {
   const HypothesisField& field;
   NearestDataPoint data;
   ViewingSphere sphere{kAspectCells};
-  std::vector<int> region_of_cell;
 };
 
 LocalizationOptions localization_options(const RecognizeOptions& options) {
@@ -108,8 +107,7 @@ void verify_in_order(const ScanContext& scan, const std::vector<ObjectHypothesis
     if (refined.verification.accepted) {
       result.detections.push_back(make_detection(scan, hypothesis, refined, static_cast<int>(i) + 1));
       for (const int region : result.detections.back().regions) taken[static_cast<std::size_t>(region)] = true;
-      for (const int region : explained_regions(model, scan.sphere, refined.localization.T_sensor_model, scan.regions,
-                                                scan.region_of_cell, scan.data)) {
+      for (const int region : explained_regions(model, scan.sphere, refined.localization.T_sensor_model, scan.image, scan.regions)) {
         taken[static_cast<std::size_t>(region)] = true;
       }
     }
@@ -158,10 +156,7 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   result.statistics.hypotheses = static_cast<long>(hypotheses.size());
 
   if (!hypotheses.empty()) {
-    std::vector<Region> bare;
-    for (const DescribedRegion& region : regions) bare.push_back(region.region);
-    const ScanContext scan{image, camera, database, regions, field, NearestDataPoint(image), ViewingSphere(kAspectCells),
-                           label_image(bare, image.size())};
+    const ScanContext scan{image, camera, database, regions, field, NearestDataPoint(image)};
     watch.lap(result.milliseconds.localize);  // the k-d tree serves localization
     verify_in_order(scan, hypotheses, options, deadline, result);                                    // Section V
   }
