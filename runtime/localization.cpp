@@ -33,11 +33,11 @@ class Refinement {
  private:
   void look(std::vector<int> visible) {
     visible_ = std::move(visible);
-    current_ = evaluate(pose_);
+    current_ = evaluate(pose_, nullptr);
   }
-  EnergyEvaluation evaluate(const Pose& pose) {
+  EnergyEvaluation evaluate(const Pose& pose, const EnergyEvaluation* nearby) {
     ++evaluations_;
-    return evaluate_energy(model_, visible_, pose, data_, options_);
+    return evaluate_energy(model_, visible_, pose, data_, options_, nearby);
   }
   // WHILE E(q + dq) < E(q): q = q + dq. pose_after: the pose after a number of steps.
   template <typename PoseAfter>
@@ -58,7 +58,7 @@ bool Refinement::search_line(const PoseAfter& pose_after) {
   int steps = 0;
   while (true) {
     const Pose trial = pose_after(steps + 1);
-    EnergyEvaluation evaluation = evaluate(trial);
+    EnergyEvaluation evaluation = evaluate(trial, &current_);
     if (!(evaluation.energy < current_.energy)) return steps > 0;
     pose_ = trial;
     current_ = std::move(evaluation);
@@ -110,15 +110,18 @@ std::vector<int> visible_points(const CompiledModel& model, const ViewingSphere&
 
 EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<int>& visible,
                                  const Pose& T_sensor_model, const NearestDataPoint& data,
-                                 const LocalizationOptions& options) {
+                                 const LocalizationOptions& options, const EnergyEvaluation* nearby) {
+  assert(nearby == nullptr || nearby->residuals.size() == visible.size());
   EnergyEvaluation evaluation;
   evaluation.residuals.reserve(visible.size());
-  for (const int i : visible) {
-    const TemplatePoint& point = model.surface.points[static_cast<std::size_t>(i)];
+  for (std::size_t k = 0; k < visible.size(); ++k) {
+    const TemplatePoint& point = model.surface.points[static_cast<std::size_t>(visible[k])];
     const Eigen::Vector3d x = T_sensor_model * point.position.cast<double>();
-    const Eigen::Vector3d nearest = data.find(x.cast<float>()).point.cast<double>();
+    const Eigen::Vector3f query = x.cast<float>();
+    const auto answer = nearby == nullptr ? data.find(query) : data.find(query, nearby->residuals[k].data_index);
+    const Eigen::Vector3d nearest = answer.point.cast<double>();
     const double z = (x - nearest).norm();  // Equation (10)
-    evaluation.residuals.push_back({x, nearest, z});
+    evaluation.residuals.push_back({x, nearest, z, answer.index});
     evaluation.energy += rho(options.loss, z / options.sigma);  // Equation (9)
   }
   return evaluation;

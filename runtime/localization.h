@@ -37,15 +37,18 @@ struct EnergyEvaluation {
     Eigen::Vector3d point;    // x_i(q), the template point in the sensor frame. Unit: mm.
     Eigen::Vector3d nearest;  // its nearest data point. Unit: mm.
     double distance = 0.0;    // z_i(q), eq. (10). Unit: mm.
+    int data_index = 0;       // of the nearest data point, for the next search
   };
   double energy = 0.0;
   std::vector<Residual> residuals;  // in the order of the visible points
 };
 
 // E(q) of eq. (9) over fixed visible points: one search for a nearest data point each. 0 when there are none.
+// nearby: an evaluation of the same visible points at a pose not far away; the searches start from its nearest points.
 [[nodiscard]] EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<int>& visible,
                                                const Pose& T_sensor_model, const NearestDataPoint& data,
-                                               const LocalizationOptions& options);
+                                               const LocalizationOptions& options,
+                                               const EnergyEvaluation* nearby = nullptr);
 
 // Its energy alone.
 [[nodiscard]] double localization_energy(const CompiledModel& model, const std::vector<int>& visible,

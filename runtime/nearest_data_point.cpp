@@ -15,6 +15,8 @@ using Tree = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 // Keeps the one nearest point and lives on the stack; FLANN's own result sets allocate for every query.
 class Nearest final : public flann::ResultSet<float> {
  public:
+  Nearest() = default;
+  Nearest(float squared_distance, std::size_t index) : distance_(squared_distance), index_(index) {}
   [[nodiscard]] bool full() const override { return distance_ < std::numeric_limits<float>::max(); }
   void addPoint(float squared_distance, std::size_t index) override {
     if (!(squared_distance < distance_)) return;
@@ -36,6 +38,13 @@ struct NearestDataPoint::Impl {
   std::vector<Eigen::Vector3f> points;  // the valid cells, row by row
   std::vector<int> cells;               // the cell of each
   Tree tree;
+
+  [[nodiscard]] Answer search(const Eigen::Vector3f& query, Nearest nearest) const {
+    assert(query.allFinite());
+    tree.findNeighbors(nearest, query.data(), flann::SearchParams());
+    const Eigen::Vector3f& point = points[nearest.index()];
+    return {point, cells[nearest.index()], (query - point).norm(), static_cast<int>(nearest.index())};
+  }
 };
 
 NearestDataPoint::NearestDataPoint(const RangeImage& image) : impl_(std::make_unique<Impl>()) {
@@ -54,11 +63,12 @@ NearestDataPoint::NearestDataPoint(NearestDataPoint&&) noexcept = default;
 NearestDataPoint& NearestDataPoint::operator=(NearestDataPoint&&) noexcept = default;
 
 NearestDataPoint::Answer NearestDataPoint::find(const Eigen::Vector3f& query) const {
-  assert(query.allFinite());
-  Nearest nearest;
-  impl_->tree.findNeighbors(nearest, query.data(), flann::SearchParams());
-  const Eigen::Vector3f& point = impl_->points[nearest.index()];
-  return {point, impl_->cells[nearest.index()], (query - point).norm()};
+  return impl_->search(query, Nearest());
+}
+
+NearestDataPoint::Answer NearestDataPoint::find(const Eigen::Vector3f& query, int guess) const {
+  const auto index = static_cast<std::size_t>(guess);
+  return impl_->search(query, Nearest((query - impl_->points[index]).squaredNorm(), index));
 }
 
 }  // namespace foresight

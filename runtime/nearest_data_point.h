@@ -22,9 +22,13 @@ class NearestDataPoint {
     Eigen::Vector3f point;  // the nearest data point
     int cell = 0;           // its cell in the image
     float distance = 0.0F;  // Unit: mm.
+    int index = 0;          // names the point in `guess` below
   };
   // REQUIRES: a finite query. Of points equally near, the same one every time.
   [[nodiscard]] Answer find(const Eigen::Vector3f& query) const;
+  // The same, sooner: the search starts from a point that is likely near, such as the answer to a query near by.
+  // Of points equally near, the guess is preferred. REQUIRES: guess is an Answer::index of this object.
+  [[nodiscard]] Answer find(const Eigen::Vector3f& query, int guess) const;
 
  private:
   struct Impl;
