@@ -93,13 +93,11 @@ SceneOptions scene_options(const SimulateCommand& command, std::size_t models) {
   if (parsed.ec == std::errc() && parsed.ptr != end && *parsed.ptr == '-') {
     parsed = std::from_chars(parsed.ptr + 1, end, options.most_objects);
   }
-  if (parsed.ec != std::errc() || parsed.ptr != end || options.fewest_objects < 1 || options.most_objects < options.fewest_objects) {
+  if (parsed.ec != std::errc() || parsed.ptr != end) {
     throw UsageError("--objects", "\"" + command.objects + "\" is not a number or a range", "give for instance 1 or 3-6");
   }
-  if (static_cast<std::size_t>(options.most_objects) > models) {
-    throw UsageError("--objects", "more objects than CAD files, and each appears at most once in a scene", "give more CAD files or fewer objects");
-  }
   options.background = command.background;
+  check(options, models);
   return options;
 }
 
