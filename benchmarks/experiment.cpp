@@ -124,11 +124,14 @@ SceneRecord recognize_and_score(const Bench& bench, const std::string& name, con
   return record;
 }
 
-void write_csv(const ExperimentOptions& options, const std::string& name, const Table& table) {
+void make_folder(const std::string& folder) {
   std::error_code failed;
-  std::filesystem::create_directories(options.output, failed);
-  if (failed)
-    throw InputError(options.output, "the folder cannot be made: " + failed.message(), "give another folder with -o");
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw InputError(folder, "the folder cannot be made: " + failed.message(), "give another folder with -o");
+}
+
+void write_csv(const ExperimentOptions& options, const std::string& name, const Table& table) {
+  make_folder(options.output);
   write_file_atomically(options.output + "/" + name + ".csv", to_csv(table));
 }
 

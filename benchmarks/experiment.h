@@ -66,6 +66,9 @@ struct Bench {
 void write_results(const ExperimentOptions& options, const std::string& name, const std::vector<SummaryRow>& rows,
                    const std::vector<SceneRecord>& scenes, const std::vector<CadModel>& models);
 
+// Makes a folder where there is none. Throws InputError when that fails.
+void make_folder(const std::string& folder);
+
 // Writes one CSV into the output folder, which is made when missing.
 void write_csv(const ExperimentOptions& options, const std::string& name, const Table& table);
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "benchmarks/commands.h"
-#include "benchmarks/overlay.h"
+#include "benchmarks/scene_picture.h"
 #include "benchmarks/truth_file.h"
 #include "common/errors.h"
 #include "common/scan_file.h"
@@ -42,24 +42,6 @@ std::vector<TrueObject> truth_of(const ScanTruth& scan, const std::vector<CadMod
   return truth;
 }
 
-// The truth thin and white, the reports in the colours of their objects.
-void write_overlay(const std::string& file, const RangeImage& image, const PinholeCamera& camera,
-                   const std::vector<CadModel>& models, const SceneRecord& record) {
-  Picture picture = shade(image);
-  const auto edges_of = [&](int object) {
-    const CadModel& model = models[static_cast<std::size_t>(object)];
-    return model_edges(model.vertices, model.triangles);
-  };
-  for (const ReportedObject& report : record.reported) {
-    draw_edges(picture, camera, edges_of(report.object), report.T_sensor_model,
-               {object_colour(report.object), 3, false});
-  }
-  for (const TrueObject& object : record.truth) {
-    draw_edges(picture, camera, edges_of(object.object), object.poses.front(), {{255, 255, 255}, 1, false});
-  }
-  write_picture(file, picture);
-}
-
 void run_real(ExperimentOptions options, const std::string& folder) {
   if (options.cad_files.empty()) options.cad_files = cad_files_in(folder + "/models");
   const SensorModel sensor =
@@ -81,8 +63,9 @@ void run_real(ExperimentOptions options, const std::string& folder) {
     used.camera = *scan.camera;
     records[static_cast<std::size_t>(i)] = recognize_and_score(
         {models, objects, database, used, options.method}, truth.scan, scan.image, truth_of(truth, models, truth_file));
-    write_overlay(options.output + "/" + truth.scan + ".png", scan.image, used.camera, models,
-                  records[static_cast<std::size_t>(i)]);
+    const SceneRecord& record = records[static_cast<std::size_t>(i)];
+    write_picture(options.output + "/" + truth.scan + ".png",
+                  draw_scene(scan.image, used.camera, models, record.truth, record.reported));
   });
   std::vector<SummaryRow> rows = {summarize("visible >= 50 %", records, {0.5, 2.0}), summarize("all", records)};
   write_results(options, "real", rows, records, models);

@@ -1,4 +1,5 @@
-// The truth of a folder of real scans: truth.json beside scans/, models/ and the camera files.
+// What a folder of scans shows: the truth.json that `foresightc simulate` writes beside its scans, and that of real
+// scans, which has cameras and equally good poses besides.
 #pragma once
 
 #include <string>
@@ -14,8 +15,8 @@ struct ScanTruth {
     std::vector<Pose> poses;  // T_sensor_model, then equally good ones
     double visible_fraction = 0.0;
   };
-  std::string scan;    // name without folder and ending
-  std::string camera;  // the camera file is camera_NAME.json
+  std::string scan;    // name without folder; of real scans without ending, too
+  std::string camera;  // the camera file is camera_NAME.json; empty where the file names none
   std::vector<Object> objects;
 };
 

@@ -33,6 +33,16 @@ TEST(TruthFile, gives_scans_objects_and_all_good_poses) {
   EXPECT_EQ(scans[0].objects[0].poses[0].translation, Eigen::Vector3d(10, 20, 900));
 }
 
+TEST(TruthFile, needs_neither_camera_nor_equally_good_poses) {
+  const std::vector<ScanTruth> scans = read(
+      R"({"scans": [{"scan": "scan_0000.pcd", "objects": [{"object": "tee", "visible_fraction": 1, "T_sensor_model": )" +
+      std::string(kPose) + "}]}]}");
+  ASSERT_EQ(scans.size(), 1U);
+  EXPECT_EQ(scans[0].camera, "");
+  ASSERT_EQ(scans[0].objects.size(), 1U);
+  EXPECT_EQ(scans[0].objects[0].poses.size(), 1U);
+}
+
 TEST(TruthFile, that_is_none_is_refused_by_name) {
   for (const std::string& text :
        {std::string(), std::string("scans"), std::string("{}"), std::string(R"({"scans": [{}]})"),
