@@ -8,7 +8,10 @@ namespace foresight {
 
 struct DensityOptions {
   int bins = 24;          // P(R|B) = 3e-6 of Section IV.A is 24^-4: a uniform background over four attributes of 24 bins. Limit: 2 to 1000.
-  double kernel = 0.5;    // standard deviation of the Gaussian each sample is smoothed with, in bins; 0 = the raw histogram of the paper. Limit: 0 to 10.
+  // Standard deviation of the Gaussian each sample is smoothed with, in bins; 0 = the raw histogram of the paper. Limit: 0 to 10.
+  // DEFAULT: raw. Bins span a model's whole range of values, so that one bin is wide already; a kernel of half a bin let
+  // 39 % instead of 20 % of the possible matches through, for 12 times the hypotheses and no more objects (80 clean scans).
+  double kernel = 0.0;
 };
 
 bool operator==(const DensityOptions& a, const DensityOptions& b);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <sstream>
 
 #include "common/errors.h"
 
@@ -13,6 +14,9 @@ namespace foresight {
 
 int run_program(const std::string& name, CLI::App& app, int argc, char** argv, const std::function<int()>& command) {
   try {
+    for (CLI::App* subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
+      subcommand->set_version_flag("--version", app.version());
+    }
     app.parse(argc, argv);
     const int code = command();
     std::cout.flush();
@@ -69,6 +73,17 @@ void Progress::draw() {
   const std::string filled(static_cast<std::size_t>(kWidth * done_ / total_), '#');
   std::fprintf(stderr, "\r\033[K%s [%-*s] %3d %% %s", title_.c_str(), kWidth, filled.c_str(), percent, note_.c_str());
   std::fflush(stderr);
+}
+
+CLI::Validator number_between(double least, double most) {
+  std::ostringstream limits;
+  limits << least << " to " << most;
+  const auto fault_of = [=, limits = limits.str()](const std::string& text) {
+    double value = 0.0;
+    const bool accepted = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+    return accepted ? std::string() : text + " is not a number from " + limits;
+  };
+  return {fault_of, limits.str()};
 }
 
 void add_progress_option(CLI::App& command, std::string& style) {

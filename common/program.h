@@ -40,6 +40,9 @@ class Progress {
   std::mutex mutex_;
 };
 
+// Accepts numbers from `least` to `most`. NaN, which CLI::Range lets through, is none of them.
+CLI::Validator number_between(double least, double most);
+
 // The --progress option, for every command that takes a while.
 void add_progress_option(CLI::App& command, std::string& style);
 

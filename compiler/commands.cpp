@@ -49,6 +49,13 @@ CadModel read_checked(const std::string& file, const std::string& unit, const Se
   return model;
 }
 
+// What the runtime takes for a name, see runtime/database_check.cpp.
+void check_name(const std::string& name) {
+  const bool plain = std::none_of(name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; });
+  if (plain && !name.empty() && name.size() <= 1000) return;
+  throw UsageError("--name", "an object's name is empty, longer than 1000 bytes or has control characters", "name the object in plain text");
+}
+
 std::vector<CadModel> read_all(const std::vector<std::string>& files, const std::vector<std::string>& names,
                                const std::string& unit, const SensorModel& sensor) {
   if (!names.empty() && names.size() != files.size()) {
@@ -59,6 +66,7 @@ std::vector<CadModel> read_all(const std::vector<std::string>& files, const std:
   for (std::size_t i = 0; i < files.size(); ++i) {
     models.push_back(read_checked(files[i], unit, sensor));
     if (!names.empty()) models.back().name = names[i];
+    check_name(models.back().name);
     if (!seen.insert(models.back().name).second) {
       throw UsageError(files[i], "two objects are named " + models.back().name, "tell them apart with --name");
     }
@@ -93,13 +101,11 @@ SceneOptions scene_options(const SimulateCommand& command, std::size_t models) {
   if (parsed.ec == std::errc() && parsed.ptr != end && *parsed.ptr == '-') {
     parsed = std::from_chars(parsed.ptr + 1, end, options.most_objects);
   }
-  if (parsed.ec != std::errc() || parsed.ptr != end || options.fewest_objects < 1 || options.most_objects < options.fewest_objects) {
+  if (parsed.ec != std::errc() || parsed.ptr != end) {
     throw UsageError("--objects", "\"" + command.objects + "\" is not a number or a range", "give for instance 1 or 3-6");
   }
-  if (static_cast<std::size_t>(options.most_objects) > models) {
-    throw UsageError("--objects", "more objects than CAD files, and each appears at most once in a scene", "give more CAD files or fewer objects");
-  }
   options.background = command.background;
+  check(options, models);
   return options;
 }
 
@@ -143,8 +149,9 @@ int run_compile(const CompileCommand& command) {
                        "check the unit, or describe a sensor that resolves the object's faces");
     }
   }
-  write_file_atomically(command.output, encode_database(database));
-  if (!command.depfile.empty()) write_depfile(command);
+  const std::string bytes = encode_database(database);
+  if (!command.depfile.empty()) write_depfile(command);  // first, so that no database stands without it
+  write_file_atomically(command.output, bytes);
   return kExitDone;
 }
 

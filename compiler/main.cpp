@@ -23,9 +23,9 @@ CLI::App* add_compile(CLI::App& app, CompileCommand& c) {
   command->add_option("--jobs", c.jobs, "Threads, 0 = all cores")->check(CLI::Range(0, 4096))->capture_default_str();
   command->add_option("--views", c.options.samples.views, "Sample views: 20, 80, 320, 1280, ...")->capture_default_str();
   command->add_option("--seed", c.options.samples.seed, "Seed of noise, distance and turn of the sample views")->capture_default_str();
-  command->add_option("--bins", c.options.density.bins, "Bins of the densities")->capture_default_str();
-  command->add_option("--kernel", c.options.density.kernel, "Kernel of the densities in bins, 0 = raw histograms")->capture_default_str();
-  command->add_option("--spacing", c.options.surface.spacing, "Spacing of the surface template, mm")->check(CLI::Range(0.1, 1000.0))->capture_default_str();
+  command->add_option("--bins", c.options.density.bins, "Bins of the densities")->check(CLI::Range(2, 1000))->capture_default_str();
+  command->add_option("--kernel", c.options.density.kernel, "Kernel of the densities in bins, 0 = raw histograms")->check(number_between(0.0, 10.0))->capture_default_str();
+  command->add_option("--spacing", c.options.surface.spacing, "Spacing of the surface template, mm")->check(number_between(0.1, 1000.0))->capture_default_str();
   command->add_option("--depfile", c.depfile, "Write a Make dependency file");
   add_progress_option(*command, c.progress);
   return command;
@@ -54,7 +54,7 @@ CLI::App* add_simulate(CLI::App& app, SimulateCommand& c) {
   command->add_option("--scenes", c.scenes, "Number of scans")->check(CLI::Range(1, 1000000))->capture_default_str();
   command->add_option("--objects", c.objects, "Objects a scene: a number, or a range such as 3-6")->capture_default_str();
   command->add_flag("--background", c.background, "Objects rest on a table instead of floating before nothing");
-  command->add_option("--noise", c.noise, "Standard deviation of the depth, mm; the sensor file's when not given")->check(CLI::NonNegativeNumber);
+  command->add_option("--noise", c.noise, "Standard deviation of the depth, mm; the sensor file's when not given")->check(number_between(0.0, 1000.0));
   command->add_option("--seed", c.seed, "Seed of the scenes")->capture_default_str();
   command->add_option("--format", c.format, "pcd or png (16-bit depth and a camera.json)")->check(CLI::IsMember({"pcd", "png"}))->capture_default_str();
   command->add_option("--jobs", c.jobs, "Threads, 0 = all cores")->check(CLI::Range(0, 4096))->capture_default_str();

@@ -384,7 +384,8 @@ std::string truth_json(const std::vector<Scene>& scenes, const std::vector<CadMo
                                            {"sensor", sensor.name},
                                            {"seed", seed},
                                            {"scans", scans}};
-  return document.dump(1) + "\n";
+  // File names are bytes, JSON is UTF-8: what is none becomes the replacement character.
+  return document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace foresight

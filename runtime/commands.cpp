@@ -100,7 +100,6 @@ int run_recognize(const RecognizeCommand& command) {
   check(command.options);
   const Database database = load_database(command.database);
   const std::vector<std::string> names = names_of(database);
-  if (command.format == "bop-csv") std::cout << bop_csv_header();
   bool any_found = false;
   bool all_complete = true;
   // The bar would fight with results printed to the same terminal, so it shows only where they go elsewhere.
@@ -109,6 +108,8 @@ int run_recognize(const RecognizeCommand& command) {
     const ReadyScan scan = read_ready_scan(file, command.source);
     const Deadline deadline = command.deadline_ms > 0 ? Deadline(Clock::now() + std::chrono::milliseconds(command.deadline_ms)) : std::nullopt;
     const RecognitionResult result = recognize(scan.image, scan.camera, database, command.options, deadline);
+    // Not before the first result: a refused scan leaves stdout empty.
+    if (command.format == "bop-csv" && &file == &command.scans.front()) std::cout << bop_csv_header();
     print(command, file, result, names, scan.read_milliseconds);
     any_found = any_found || !result.detections.empty();
     all_complete = all_complete && result.complete;

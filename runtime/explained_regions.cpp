@@ -2,21 +2,18 @@
 
 #include <algorithm>
 
-#include "runtime/localization.h"
-
 namespace foresight {
 namespace {
 
-// A visible template point in the sensor frame, with the normals of its faces (an edge point has several).
+// A template point in the sensor frame, with the normals of its faces (an edge point has several).
 struct PosedPoint {
   Eigen::Vector3d position;
   std::vector<Eigen::Vector3d> normals;
 };
 
-std::vector<PosedPoint> posed_points(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model) {
+std::vector<PosedPoint> posed_points(const CompiledModel& model, const Pose& T_sensor_model) {
   std::vector<PosedPoint> posed;
-  for (const int i : visible_points(model, sphere, T_sensor_model)) {
-    const TemplatePoint& point = model.surface.points[static_cast<std::size_t>(i)];
+  for (const TemplatePoint& point : model.surface.points) {
     PosedPoint& added = posed.emplace_back();
     added.position = T_sensor_model * point.position.cast<double>();
     for (const int face : point.faces) {
@@ -51,10 +48,9 @@ double explained_share(const Region& region, const RangeImage& image, const std:
 
 }  // namespace
 
-std::vector<int> explained_regions(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model,
-                                   const RangeImage& image, const std::vector<DescribedRegion>& regions,
-                                   const ExplanationOptions& options) {
-  const std::vector<PosedPoint> points = posed_points(model, sphere, T_sensor_model);
+std::vector<int> explained_regions(const CompiledModel& model, const Pose& T_sensor_model, const RangeImage& image,
+                                   const std::vector<DescribedRegion>& regions, const ExplanationOptions& options) {
+  const std::vector<PosedPoint> points = posed_points(model, T_sensor_model);
   // A point of the surface lies within one spacing of a template point.
   const double reach = options.match_distance + model.surface.spacing;
   std::vector<int> explained;

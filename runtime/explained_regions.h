@@ -7,7 +7,6 @@
 #include "common/pose.h"
 #include "common/range_image.h"
 #include "common/region_attributes.h"
-#include "common/viewing_sphere.h"
 
 namespace foresight {
 
@@ -21,9 +20,9 @@ struct ExplanationOptions {
 // Ascending region indices.
 // The paper drops hypotheses "which have regions in common with the recognized object"; read here as all the regions that
 // the accepted pose explains, not only the two or three that were matched.
-[[nodiscard]] std::vector<int> explained_regions(const CompiledModel& model, const ViewingSphere& sphere,
-                                                 const Pose& T_sensor_model, const RangeImage& image,
-                                                 const std::vector<DescribedRegion>& regions,
+// All template points take part, not only those of the aspect: a face of which little shows still explains its region.
+[[nodiscard]] std::vector<int> explained_regions(const CompiledModel& model, const Pose& T_sensor_model,
+                                                 const RangeImage& image, const std::vector<DescribedRegion>& regions,
                                                  const ExplanationOptions& options = {});
 
 }  // namespace foresight

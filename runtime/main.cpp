@@ -1,4 +1,6 @@
 // foresight: recognizes the objects of a compiled database in range images.
+#include <limits>
+
 #include "common/program.h"
 #include "runtime/commands.h"
 
@@ -15,9 +17,9 @@ void add_method_options(CLI::App& command, RecognizeOptions& options) {
       {"lorentzian", Loss::lorentzian}, {"tukey", Loss::tukey}, {"huber", Loss::huber}, {"gaussian", Loss::gaussian}};
   command.add_option("--loss", options.loss, "Error distribution of localization: lorentzian, tukey, huber, gaussian")
       ->transform(CLI::CheckedTransformer(losses, CLI::ignore_case).description(""));
-  command.add_option("--min-matched", options.smallest_matched, "Accept from this matched fraction (alpha)")->capture_default_str();
-  command.add_option("--min-coherent", options.smallest_coherent, "Accept from this coherent fraction (beta)")->capture_default_str();
-  command.add_option("--max-occluding", options.largest_occluding, "Accept up to this occluding fraction (gamma)")->capture_default_str();
+  command.add_option("--min-matched", options.smallest_matched, "Accept from this matched fraction (alpha)")->check(number_between(0.0, 1.0))->capture_default_str();
+  command.add_option("--min-coherent", options.smallest_coherent, "Accept from this coherent fraction (beta)")->check(number_between(0.0, 1.0))->capture_default_str();
+  command.add_option("--max-occluding", options.largest_occluding, "Accept up to this occluding fraction (gamma)")->check(number_between(0.0, 1.0))->capture_default_str();
 }
 
 CLI::App* add_recognize(CLI::App& app, RecognizeCommand& c) {
@@ -29,9 +31,9 @@ CLI::App* add_recognize(CLI::App& app, RecognizeCommand& c) {
   command->add_option("--format", c.format, "text, json (one object a line and scan) or bop-csv")
       ->check(CLI::IsMember({"text", "json", "bop-csv"}))->capture_default_str();
   add_scan_options(*command, c.source);
-  command->add_option("--deadline-ms", c.deadline_ms, "Print what was found when this time is over, per scan")->check(CLI::PositiveNumber);
-  command->add_option("--top", c.options.most_detections, "Stop after this many detections a scan, 0 = no limit")->check(CLI::NonNegativeNumber)->capture_default_str();
-  command->add_option("--max-verifications", c.options.most_verifications, "Stop after this many verifications a scan, 0 = no limit")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command->add_option("--deadline-ms", c.deadline_ms, "Print what was found when this time is over, per scan")->check(CLI::Range(1, std::numeric_limits<int>::max()));
+  command->add_option("--top", c.options.most_detections, "Stop after this many detections a scan, 0 = no limit")->check(CLI::Range(0, std::numeric_limits<int>::max()))->capture_default_str();
+  command->add_option("--max-verifications", c.options.most_verifications, "Stop after this many verifications a scan, 0 = no limit")->check(CLI::Range(0, std::numeric_limits<int>::max()))->capture_default_str();
   command->add_option("--prior-sign", c.options.prior_sign, "1-clique potential: minus-log, or as-printed in the paper")
       ->transform(CLI::CheckedTransformer(signs, CLI::ignore_case).description(""));
   command->add_option("--pruning", c.options.pruning, "hcf (highest confidence first) or none")

@@ -28,6 +28,12 @@ std::vector<double> likelihoods_off(const std::vector<double>& likelihoods, cons
 
 }  // namespace
 
+BackgroundOptions background_for(const DensityOptions& densities) {
+  BackgroundOptions background;
+  if (densities.bins != DensityOptions{}.bins) background.likelihood = std::pow(densities.bins, -kAttributeCount);
+  return background;
+}
+
 std::vector<Match> match_likelihoods(const std::vector<DescribedRegion>& regions, const Database& database,
                                      const BackgroundOptions& options) {
   assert(options.prior > 0.0 && options.prior < 1.0 && options.likelihood > 0.0);

@@ -10,8 +10,12 @@ namespace foresight {
 
 struct BackgroundOptions {
   double prior = 0.3;            // P(B), Section IV.A. Limit: (0, 1).
-  double likelihood = 0.000003;  // P(R|B), Section IV.A: 24^-4, so it belongs to densities of 24 bins. Limit: > 0.
+  double likelihood = 0.000003;  // P(R|B), Section IV.A. Limit: > 0.
 };
+
+// The paper's 0.000003 is 24^-4: a background that is uniform over four attributes of 24 bins. For densities of another
+// number of bins P(R|B) is that number to the power -4.
+[[nodiscard]] BackgroundOptions background_for(const DensityOptions& densities);
 
 // Region R explained by face M: one ON/OFF variable of the field.
 struct Match {

@@ -107,7 +107,7 @@ void verify_in_order(const ScanContext& scan, const std::vector<ObjectHypothesis
     if (refined.verification.accepted) {
       result.detections.push_back(make_detection(scan, hypothesis, refined, static_cast<int>(i) + 1));
       for (const int region : result.detections.back().regions) taken[static_cast<std::size_t>(region)] = true;
-      for (const int region : explained_regions(model, scan.sphere, refined.localization.T_sensor_model, scan.image, scan.regions)) {
+      for (const int region : explained_regions(model, refined.localization.T_sensor_model, scan.image, scan.regions)) {
         taken[static_cast<std::size_t>(region)] = true;
       }
     }
@@ -139,7 +139,7 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   const auto regions = extract_regions(image, camera, database.content().segmentation);
   watch.lap(result.milliseconds.extract);
 
-  const BackgroundOptions background;
+  const BackgroundOptions background = background_for(database.content().density);
   Potentials potentials;
   potentials.prior_sign = options.prior_sign;
   const auto matches = match_likelihoods(regions, database, background);                             // eqs. (4), (5)

@@ -1,3 +1,172 @@
 #include "runtime/foresight.h"
 
 #include <gtest/gtest.h>
+
+#include <fstream>
+#include <thread>
+
+#include "common/errors.h"
+#include "compiler/database_writer.h"
+#include "runtime/recognize.h"
+#include "tests/runtime/compiled_objects.h"
+
+namespace foresight {
+namespace {
+
+using test::compiled_objects;
+
+// A database on disk and a scan in memory, as a program that links the library has them.
+struct Client {
+  test::TemporaryFolder folder;
+  std::string file = folder.file("objects.db");
+  RangeImage image = test::visible_scene(2, 0).scan.image;
+
+  Client() { std::ofstream(file, std::ios::binary) << encode_database(compiled_objects().content()); }
+  [[nodiscard]] RangeImageView view() const { return {image.rows, image.columns, image.points.front().data()}; }
+};
+
+void expect_same(const RecognitionResult& a, const RecognitionResult& b) {
+  EXPECT_EQ(a.complete, b.complete);
+  EXPECT_EQ(a.statistics.verifications, b.statistics.verifications);
+  EXPECT_EQ(a.statistics.energy_evaluations, b.statistics.energy_evaluations);
+  ASSERT_EQ(a.detections.size(), b.detections.size());
+  for (std::size_t i = 0; i < a.detections.size(); ++i) {
+    EXPECT_EQ(a.detections[i].object, b.detections[i].object);
+    EXPECT_EQ(a.detections[i].T_sensor_model, b.detections[i].T_sensor_model);
+    EXPECT_EQ(a.detections[i].score, b.detections[i].score);
+  }
+}
+
+TEST(Recognizer, recognizes_as_in_process_from_a_saved_database) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  const RecognitionResult result = recognizer.recognize(client.view());
+  EXPECT_EQ(result.detections.size(), 2U);
+  expect_same(result, recognize(client.image, fit_camera(client.image).value(), compiled_objects(), {}));
+}
+
+TEST(Recognizer, finds_the_same_objects_as_with_the_sensors_own_camera) {
+  const Client client;
+  const RecognitionResult fitted = Recognizer(client.file).recognize(client.view());
+  const RecognitionResult given =
+      recognize(client.image, compiled_objects().content().sensor.camera, compiled_objects(), {});
+  ASSERT_EQ(fitted.detections.size(), given.detections.size());
+  for (std::size_t i = 0; i < given.detections.size(); ++i)
+    EXPECT_EQ(fitted.detections[i].object, given.detections[i].object);
+}
+
+TEST(Recognizer, names_its_objects_in_the_order_of_the_database) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  EXPECT_EQ(recognizer.object_names(), (std::vector<std::string>{"castle", "stick"}));
+  EXPECT_EQ(recognizer.database().models().size(), 2U);
+}
+
+TEST(Recognizer, can_be_moved) {
+  const Client client;
+  Recognizer first(client.file);
+  const RecognitionResult before = first.recognize(client.view());
+  Recognizer second(std::move(first));
+  expect_same(second.recognize(client.view()), before);
+  RecognizeOptions none;
+  none.most_verifications = 1;
+  Recognizer third(client.file, none);
+  third = std::move(second);
+  expect_same(third.recognize(client.view()), before);
+}
+
+TEST(Recognizer, heeds_its_options) {
+  const Client client;
+  RecognizeOptions one;
+  one.most_detections = 1;
+  EXPECT_EQ(Recognizer(client.file, one).recognize(client.view()).detections.size(), 1U);
+}
+
+TEST(Recognizer, stops_at_its_deadline) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  const RecognitionResult late = recognizer.recognize(client.view(), std::chrono::milliseconds(0));
+  EXPECT_FALSE(late.complete);
+  EXPECT_TRUE(late.detections.empty());
+  EXPECT_TRUE(recognizer.recognize(client.view(), std::chrono::hours(1)).complete);
+}
+
+TEST(Recognizer, gives_identical_results_to_several_threads) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  const RecognitionResult alone = recognizer.recognize(client.view());
+  std::vector<RecognitionResult> results(4);
+  std::vector<std::thread> threads;
+  for (RecognitionResult& result : results) {
+    threads.emplace_back([&] { result = recognizer.recognize(client.view()); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const RecognitionResult& result : results) expect_same(result, alone);
+}
+
+TEST(Recognizer, takes_every_kind_of_invalid_cell_for_a_hole) {
+  const Client client;
+  Client damaged;
+  const std::vector<Eigen::Vector3f> bad = {{0, 0, 0},
+                                            {1, 1, -900},
+                                            {std::numeric_limits<float>::infinity(), 0, 900},
+                                            {0, 0, std::numeric_limits<float>::infinity()},
+                                            {0, std::numeric_limits<float>::quiet_NaN(), 900}};
+  std::size_t next = 0;
+  for (int cell = 0; cell < damaged.image.size(); ++cell) {
+    if (!damaged.image.valid(cell)) damaged.image[cell] = bad[next++ % bad.size()];
+  }
+  ASSERT_GT(next, 100U);
+  const Recognizer recognizer(client.file);
+  expect_same(recognizer.recognize(damaged.view()), recognizer.recognize(client.view()));
+}
+
+TEST(Recognizer, refuses_views_outside_their_limits) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  const float* xyz = client.view().xyz;
+  EXPECT_THROW((void)recognizer.recognize({client.image.rows, client.image.columns, nullptr}), InputError);
+  for (const auto& [rows, columns] : {std::pair(31, 64), {64, 31}, {0, 0}, {-64, 64}, {4097, 64}, {64, 4097}}) {
+    EXPECT_THROW((void)recognizer.recognize({rows, columns, xyz}), InputError) << rows << " x " << columns;
+  }
+}
+
+TEST(Recognizer, refuses_views_without_data_or_without_a_pinhole_grid) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  const auto refused = [&](const std::vector<float>& xyz) {
+    EXPECT_THROW((void)recognizer.recognize({64, 64, xyz.data()}), InputError);
+  };
+  refused(std::vector<float>(64 * 64 * 3, std::numeric_limits<float>::quiet_NaN()));
+  refused(std::vector<float>(64 * 64 * 3, 0.0F));
+  std::vector<float> scattered;
+  Random random(1);
+  for (int i = 0; i < 64 * 64; ++i) {
+    for (const double value : {random.uniform(-200, 200), random.uniform(-200, 200), random.uniform(600, 1200)}) {
+      scattered.push_back(static_cast<float>(value));
+    }
+  }
+  refused(scattered);
+}
+
+TEST(Recognizer, refuses_files_and_options_it_cannot_use) {
+  const Client client;
+  EXPECT_THROW(Recognizer(client.folder.file("missing.db")), InputError);
+  const std::string foreign = client.folder.file("foreign.db");
+  std::ofstream(foreign) << "OFF\n";
+  EXPECT_THROW(Recognizer{foreign}, DatabaseError);
+  RecognizeOptions wrong;
+  wrong.smallest_matched = 7.0;
+  EXPECT_THROW(Recognizer(client.file, wrong), UsageError);
+}
+
+TEST(Version, has_three_numbers) {
+  int major = -1;
+  int minor = -1;
+  int patch = -1;
+  char rest = 0;
+  EXPECT_EQ(std::sscanf(version(), "%d.%d.%d%c", &major, &minor, &patch, &rest), 3);
+}
+
+}  // namespace
+}  // namespace foresight

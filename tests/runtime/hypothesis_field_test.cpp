@@ -40,7 +40,7 @@ Database random_database(Random& random, int models, int faces) {
       model.faces.push_back(face);
     }
     for (int a = 0; a < faces; ++a) {
-      for (int b = a; b < faces; ++b) {
+      for (int b = a + 1; b < faces; ++b) {
         const auto found = [&](int f) { return model.faces[static_cast<std::size_t>(f)].views_found > 0; };
         if (!found(a) || !found(b) || random.uniform() < 0.3) continue;
         model.pairs.push_back(

@@ -1,0 +1,240 @@
+// timings: how long each runtime stage takes on fixed simulated scans, with Google Benchmark.
+//
+// All the objects of the paper are loaded; the scans show one object alone, and six at once. Counters say how much work
+// a time stands for: data points, matches, hypotheses, and evaluations of eq. (9) as in Table I.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "benchmarks/experiment.h"
+#include "benchmarks/series.h"
+#include "common/program.h"
+#include "compiler/scene_generator.h"
+#include "runtime/highest_confidence_first.h"
+#include "runtime/hypothesis_cliques.h"
+#include "runtime/pose_from_matches.h"
+#include "runtime/recognize.h"
+
+namespace foresight {
+namespace {
+
+// One scan with what each stage makes of it, so that every stage can be timed alone.
+struct Case {
+  std::string name;
+  RangeImage image;
+  const Database& database;
+  NearestDataPoint data;
+  std::vector<DescribedRegion> regions;
+  std::vector<Match> matches;
+  HypothesisField field;
+  std::vector<Label> labels;
+  std::vector<ObjectHypothesis> hypotheses;
+  ViewingSphere sphere{kAspectCells};
+
+  Case(std::string case_name, const Scene& scene, const Database& objects)
+      : name(std::move(case_name)), image(scene.scan.image), database(objects), data(image) {
+    regions = extract_regions(image, camera(), objects.content().segmentation);
+    matches = match_likelihoods(regions, objects, {});
+    field = build_hypothesis_field(regions, matches, objects, {}, {});
+    labels = highest_confidence_first(field);
+    hypotheses = hypothesis_cliques(field, objects, labels);
+  }
+  [[nodiscard]] const PinholeCamera& camera() const { return database.content().sensor.camera; }
+  [[nodiscard]] const CompiledModel& model(const ObjectHypothesis& hypothesis) const {
+    return database.models()[static_cast<std::size_t>(hypothesis.model)];
+  }
+};
+
+// The first hypotheses with a pose, in the order recognition tries them, and where localization takes them.
+struct Trial {
+  const CompiledModel* model;
+  Pose start, refined;
+};
+
+std::vector<Trial> first_trials(const Case& scan) {
+  constexpr std::size_t kTrials = 32;
+  std::vector<Trial> trials;
+  for (const ObjectHypothesis& hypothesis : scan.hypotheses) {
+    if (trials.size() == kTrials) break;
+    std::vector<RegionFaceMatch> matches;
+    for (const int index : hypothesis.matches) {
+      const Match& match = scan.field.matches[static_cast<std::size_t>(index)];
+      matches.push_back({&scan.regions[static_cast<std::size_t>(match.region)], &scan.database.face(match.face)});
+    }
+    const CompiledModel& model = scan.model(hypothesis);
+    if (const auto start = pose_from_matches(matches)) {
+      trials.push_back({&model, *start, localize(model, scan.sphere, *start, scan.data, {}).T_sensor_model});
+    }
+  }
+  return trials;
+}
+
+void count(benchmark::State& state, const char* counter, double per_iteration) {
+  state.counters[counter] = per_iteration;
+}
+
+void count_average(benchmark::State& state, const char* counter, double sum) {
+  state.counters[counter] = benchmark::Counter(sum, benchmark::Counter::kAvgIterations);
+}
+
+// Calls time_one(trial) for one trial an iteration, in turn.
+template <typename TimeOne>
+void time_trials(benchmark::State& state, const Case& scan, TimeOne&& time_one) {
+  const std::vector<Trial> trials = first_trials(scan);
+  if (trials.empty()) {
+    state.SkipWithError("no hypothesis has a pose");
+    return;
+  }
+  std::size_t next = 0;
+  for (auto step : state) {
+    (void)step;
+    time_one(trials[next]);
+    next = (next + 1) % trials.size();
+  }
+}
+
+// The whole of Section V for one hypothesis: what the number of hypotheses multiplies.
+void time_verification(benchmark::State& state, const Case& scan) {
+  double evaluations = 0.0;
+  double points = 0.0;
+  time_trials(state, scan, [&](const Trial& trial) {
+    const Localization found = localize(*trial.model, scan.sphere, trial.start, scan.data, {});
+    const Verification verified =
+        verify(*trial.model, scan.sphere, found.T_sensor_model, scan.image, scan.camera(), scan.data, {});
+    evaluations += found.energy_evaluations;
+    points += verified.visible;
+  });
+  count_average(state, "evaluations", evaluations);
+  count_average(state, "points", points);
+}
+
+void time_localize(benchmark::State& state, const Case& scan) {
+  double evaluations = 0.0;
+  time_trials(state, scan, [&](const Trial& trial) {
+    evaluations += localize(*trial.model, scan.sphere, trial.start, scan.data, {}).energy_evaluations;
+  });
+  count_average(state, "evaluations", evaluations);
+}
+
+void time_verify(benchmark::State& state, const Case& scan) {
+  double points = 0.0;
+  time_trials(state, scan, [&](const Trial& trial) {
+    points += verify(*trial.model, scan.sphere, trial.refined, scan.image, scan.camera(), scan.data, {}).visible;
+  });
+  count_average(state, "points", points);
+}
+
+void time_extract(benchmark::State& state, const Case& scan) {
+  for (auto step : state) {
+    (void)step;
+    benchmark::DoNotOptimize(extract_regions(scan.image, scan.camera(), scan.database.content().segmentation));
+  }
+  count(state, "points", count_valid(scan.image));
+  count(state, "regions", static_cast<double>(scan.regions.size()));
+}
+
+void time_field(benchmark::State& state, const Case& scan) {
+  for (auto step : state) {
+    (void)step;
+    const auto matches = match_likelihoods(scan.regions, scan.database, {});
+    benchmark::DoNotOptimize(build_hypothesis_field(scan.regions, matches, scan.database, {}, {}));
+  }
+  count(state, "matches", static_cast<double>(scan.matches.size()));
+}
+
+void time_highest_confidence_first(benchmark::State& state, const Case& scan) {
+  for (auto step : state) {
+    (void)step;
+    benchmark::DoNotOptimize(highest_confidence_first(scan.field));
+  }
+  count(state, "matches", static_cast<double>(scan.matches.size()));
+}
+
+void time_cliques(benchmark::State& state, const Case& scan) {
+  for (auto step : state) {
+    (void)step;
+    benchmark::DoNotOptimize(hypothesis_cliques(scan.field, scan.database, scan.labels));
+  }
+  count(state, "matches", static_cast<double>(std::count(scan.labels.begin(), scan.labels.end(), kOn)));
+  count(state, "hypotheses", static_cast<double>(scan.hypotheses.size()));
+}
+
+void time_data_tree(benchmark::State& state, const Case& scan) {
+  for (auto step : state) {
+    (void)step;
+    benchmark::DoNotOptimize(NearestDataPoint(scan.image));
+  }
+  count(state, "points", count_valid(scan.image));
+}
+
+void time_recognize(benchmark::State& state, const Case& scan) {
+  Statistics statistics;
+  for (auto step : state) {
+    (void)step;
+    statistics = recognize(scan.image, scan.camera(), scan.database, {}).statistics;
+  }
+  count(state, "points", count_valid(scan.image));
+  count(state, "matches", static_cast<double>(statistics.threshold_matches));
+  count(state, "verifications", static_cast<double>(statistics.verifications));
+  count(state, "evaluations", static_cast<double>(statistics.energy_evaluations));
+}
+
+std::vector<Case> fixed_cases(const std::vector<CadModel>& models, const SensorModel& sensor,
+                              const Database& database) {
+  constexpr std::uint64_t kSeed = 1;
+  const int several = std::min(6, static_cast<int>(models.size()));
+  std::vector<Case> cases;
+  cases.emplace_back(models[0].name, single_object_scene(models, sensor, false, kSeed, 0), database);
+  cases.emplace_back(std::to_string(several) + "_objects",
+                     generate_scene(models, sensor, {several, several, false}, kSeed, 0), database);
+  return cases;
+}
+
+void register_all(const std::vector<Case>& cases) {
+  const std::vector<std::pair<const char*, void (*)(benchmark::State&, const Case&)>> stages = {
+      {"verification", time_verification},
+      {"recognize", time_recognize},
+      {"extract", time_extract},
+      {"field", time_field},
+      {"hcf", time_highest_confidence_first},
+      {"cliques", time_cliques},
+      {"data_tree", time_data_tree},
+      {"localize", time_localize},
+      {"verify", time_verify}};
+  for (const auto& [stage, time] : stages) {
+    for (const Case& scan : cases) {
+      benchmark::RegisterBenchmark((std::string(stage) + "/" + scan.name).c_str(), [time = time,
+                                                                                    &scan](benchmark::State& state) {
+        time(state, scan);
+      })->Unit(benchmark::kMicrosecond);
+    }
+  }
+}
+
+int run(const ExperimentOptions& options) {
+  const SensorModel sensor = sensor_of(options.sensor_file);
+  const std::vector<CadModel> models = read_objects(options, sensor);
+  const Database database = database_of(options, models, sensor);
+  const std::vector<Case> cases = fixed_cases(models, sensor, database);
+  register_all(cases);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
+
+}  // namespace
+}  // namespace foresight
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);  // takes its own --benchmark_... out of the arguments
+  CLI::App app("Times the stages of recognition; see also --benchmark_filter=REGEX and --benchmark_format=csv.",
+               "timings");
+  foresight::ExperimentOptions options;
+  options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  app.add_option("--cad", options.cad_files, "CAD files; the eight objects of the paper when not given");
+  app.add_option("--sensor", options.sensor_file, "Sensor file; the paper's sensor when not given");
+  app.add_option("--database", options.database_file,
+                 "Compiled database of these objects; compiled here when not given");
+  foresight::add_progress_option(app, options.progress);
+  return foresight::run_program("timings", app, argc, argv, [&] { return foresight::run(options); });
+}
