@@ -46,7 +46,7 @@ void add_method_options(CLI::App& command, ExperimentOptions& options) {
       {"lorentzian", Loss::lorentzian}, {"tukey", Loss::tukey}, {"huber", Loss::huber}, {"gaussian", Loss::gaussian}};
   command.add_option("--pruning", method.pruning, "hcf (highest confidence first) or none")
       ->transform(CLI::CheckedTransformer(prunings, CLI::ignore_case).description(""));
-  command.add_option("--prior-sign", method.prior_sign, "1-clique potential: minus-log, or as-printed in the paper")
+  command.add_option("--prior-sign", method.potentials.prior_sign, "1-clique potential: minus-log, or as-printed in the paper")
       ->transform(CLI::CheckedTransformer(signs, CLI::ignore_case).description(""));
   command.add_option("--loss", method.loss, "Error distribution of localization: lorentzian, tukey, huber, gaussian")
       ->transform(CLI::CheckedTransformer(losses, CLI::ignore_case).description(""));

@@ -25,6 +25,7 @@ struct Experiment {
 [[nodiscard]] Experiment add_unknown(CLI::App& app);         // no known object
 [[nodiscard]] Experiment add_localization(CLI::App& app);    // Table I
 [[nodiscard]] Experiment add_real(CLI::App& app);            // real scans
+[[nodiscard]] Experiment add_search(CLI::App& app);          // Section VI.C, against the interpretation tree
 
 // Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
 void add_common_options(CLI::App& command, ExperimentOptions& options, int n);

@@ -34,15 +34,22 @@ bool corners_show(const std::vector<Vector2d>& polygon) {
   return true;
 }
 
-// Star-shaped about the origin, counter-clockwise.
+// Star-shaped about the origin, counter-clockwise. Every second one has a notch or two.
 std::vector<Vector2d> star_polygon(Random& random) {
   const int corners = random.integer(4, 9);
-  const double radius = random.uniform(35.0, 95.0);
-  const double unevenness = random.uniform(0.0, 0.65);
+  const double radius = random.uniform(40.0, 105.0);
+  const double unevenness = random.uniform(0.0, 0.5);
+  std::vector<double> radii(at(corners));
+  for (double& r : radii) r = radius * random.uniform(1.0 - unevenness, 1.0);
+  if (random.integer(0, 1) == 1) {
+    for (int notches = random.integer(1, 2); notches > 0; --notches) {
+      radii[at(random.integer(0, corners - 1))] = radius * random.uniform(0.25, 0.5);
+    }
+  }
   std::vector<Vector2d> polygon;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2.0 * std::numbers::pi * (i + random.uniform(-0.35, 0.35)) / corners;
-    polygon.push_back(radius * random.uniform(1.0 - unevenness, 1.0) * Vector2d(std::cos(angle), std::sin(angle)));
+    polygon.push_back(radii[at(i)] * Vector2d(std::cos(angle), std::sin(angle)));
   }
   return polygon;
 }
@@ -158,7 +165,10 @@ std::optional<CadModel> staircase(Random& random) {
       shear(row, column) = random.uniform(-0.5, 0.5);
     }
   }
-  if (touches_along_edge(field)) return std::nullopt;
+  const bool even = std::all_of(field.heights.begin(), field.heights.end(), [&](const auto& column) {
+    return column == std::vector<int>(at(rows), field.heights[0][0]);
+  });
+  if (even || touches_along_edge(field)) return std::nullopt;
   CadModel model = surface_of(field);
   for (Vector3d& v : model.vertices) v = shear * v;  // of determinant 1: outward stays outward
   return model;

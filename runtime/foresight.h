@@ -66,8 +66,18 @@ enum class Loss { lorentzian, tukey, huber, gaussian };      // rho of Section V
 enum class PriorSign { minus_log, plus_log_as_printed };     // 1-clique potential; the paper prints +log P(M), eq. (3) wants -log
 enum class Pruning { highest_confidence_first, none };       // none: every match above zero stays active
 
-struct RecognizeOptions {
+// Clique potentials of Section IV.A; lower is better. The potentials of pairs count once for each unordered pair.
+// Limit: -10000 to 10000 each.
+struct Potentials {
+  double support_on_on = -60.0;
+  double support_off_off = 40.0;
+  double contradiction_on_on = 60.0;
+  double contradiction_on_off = -10.0;
   PriorSign prior_sign = PriorSign::minus_log;
+};
+
+struct RecognizeOptions {
+  Potentials potentials;
   Pruning pruning = Pruning::highest_confidence_first;
   Loss loss = Loss::lorentzian;
   double smallest_matched = 0.5;        // alpha, Section V.C. Limit: 0 to 1.

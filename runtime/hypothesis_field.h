@@ -9,15 +9,6 @@
 
 namespace foresight {
 
-// Clique potentials of Section IV.A; lower is better. The potentials of pairs count once for each unordered pair.
-struct Potentials {
-  double support_on_on = -60.0;
-  double support_off_off = 40.0;
-  double contradiction_on_on = 60.0;
-  double contradiction_on_off = -10.0;
-  PriorSign prior_sign = PriorSign::minus_log;
-};
-
 enum Label : int { kOff = 0, kOn = 1 };
 
 struct HypothesisField {

@@ -34,7 +34,7 @@ CLI::App* add_recognize(CLI::App& app, RecognizeCommand& c) {
   command->add_option("--deadline-ms", c.deadline_ms, "Print what was found when this time is over, per scan")->check(CLI::Range(1, std::numeric_limits<int>::max()));
   command->add_option("--top", c.options.most_detections, "Stop after this many detections a scan, 0 = no limit")->check(CLI::Range(0, std::numeric_limits<int>::max()))->capture_default_str();
   command->add_option("--max-verifications", c.options.most_verifications, "Stop after this many verifications a scan, 0 = no limit")->check(CLI::Range(0, std::numeric_limits<int>::max()))->capture_default_str();
-  command->add_option("--prior-sign", c.options.prior_sign, "1-clique potential: minus-log, or as-printed in the paper")
+  command->add_option("--prior-sign", c.options.potentials.prior_sign, "1-clique potential: minus-log, or as-printed in the paper")
       ->transform(CLI::CheckedTransformer(signs, CLI::ignore_case).description(""));
   command->add_option("--pruning", c.options.pruning, "hcf (highest confidence first) or none")
       ->transform(CLI::CheckedTransformer(prunings, CLI::ignore_case).description(""));

@@ -127,6 +127,14 @@ void check(const RecognizeOptions& options) {
   fraction(options.smallest_matched, "smallest_matched");
   fraction(options.smallest_coherent, "smallest_coherent");
   fraction(options.largest_occluding, "largest_occluding");
+  const auto potential = [](double value, const char* name) {
+    if (!(value >= -1e4 && value <= 1e4))
+      throw UsageError(name, "outside its limits", "give a potential from -10000 to 10000");
+  };
+  potential(options.potentials.support_on_on, "support_on_on");
+  potential(options.potentials.support_off_off, "support_off_off");
+  potential(options.potentials.contradiction_on_on, "contradiction_on_on");
+  potential(options.potentials.contradiction_on_off, "contradiction_on_off");
   if (options.most_detections < 0) throw UsageError("most_detections", "negative", "give 0 for no limit, or a count");
   if (options.most_verifications < 0) throw UsageError("most_verifications", "negative", "give 0 for no limit, or a count");
 }
@@ -140,10 +148,9 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   watch.lap(result.milliseconds.extract);
 
   const BackgroundOptions background = background_for(database.content().density);
-  Potentials potentials;
-  potentials.prior_sign = options.prior_sign;
   const auto matches = match_likelihoods(regions, database, background);                             // eqs. (4), (5)
-  const auto field = build_hypothesis_field(regions, matches, database, background, potentials);     // eqs. (1)-(3)
+  const auto field =
+      build_hypothesis_field(regions, matches, database, background, options.potentials);            // eqs. (1)-(3)
   const auto labels = prune(field, options.pruning);
   watch.lap(result.milliseconds.field);
   const auto hypotheses = hypothesis_cliques(field, database, labels);                               // least energy first

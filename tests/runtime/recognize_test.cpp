@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "common/errors.h"
@@ -204,7 +205,7 @@ TEST(Recognize, runs_with_every_loss_and_prior_sign) {
     for (const PriorSign sign : {PriorSign::minus_log, PriorSign::plus_log_as_printed}) {
       RecognizeOptions options;
       options.loss = loss;
-      options.prior_sign = sign;
+      options.potentials.prior_sign = sign;
       const RecognitionResult result = recognize_in(one_object().scan.image, options);
       expect_consistent(result);
       expect_well_formed(result, options);
@@ -248,6 +249,10 @@ TEST(CheckRecognizeOptions, refuses_values_outside_their_limits) {
   refused([](auto& o) { o.largest_occluding = 2.0; });
   refused([](auto& o) { o.largest_occluding = std::nan(""); });
   refused([](auto& o) { o.most_detections = -1; });
+  refused([](auto& o) { o.potentials.support_on_on = -1e9; });
+  refused([](auto& o) { o.potentials.support_off_off = 1e9; });
+  refused([](auto& o) { o.potentials.contradiction_on_on = std::numeric_limits<double>::quiet_NaN(); });
+  refused([](auto& o) { o.potentials.contradiction_on_off = std::numeric_limits<double>::infinity(); });
   refused([](auto& o) { o.most_verifications = -1; });
 }
 
