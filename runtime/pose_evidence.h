@@ -1,0 +1,52 @@
+// What a scan says for and against an object at a pose, cell by cell and region by region: two-way verification.
+//
+// Beyond the paper, whose α, β, γ ask only whether template points find data near them: any cluttered surface offers
+// such data. Here the object is drawn at the pose, and the data must also not contradict it: where the sensor sees
+// through the object, where regions run on beyond its faces, where its surface has another orientation.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/camera.h"
+#include "common/compiled_model.h"
+#include "common/pose.h"
+#include "common/range_image.h"
+#include "common/region_attributes.h"
+#include "common/sensor_model.h"
+
+namespace foresight {
+
+// A scan with its regions, as evidence for or against poses is read from it.
+struct LabelledScan {
+  const RangeImage& image;
+  const PinholeCamera& camera;
+  const SensorModel& sensor;
+  const std::vector<DescribedRegion>& regions;
+  std::vector<int> labels;  // label_image() of the regions
+};
+
+struct EvidenceOptions {
+  double distance = 4.0;        // data this near to the drawn surface, across it, agree: 2 sigma, Section V.C. Unit: mm.
+  double normal_cosine = 0.87;  // of a region's normal with that of the surface it lies on. 30 degrees.
+};
+
+// Counts of the cells that would show the object, leaving out its outlines, where half a cell decides.
+struct PoseEvidence {
+  int drawn = 0;       // cells
+  int explained = 0;   // data on the surface, with its normal where a region tells it
+  int tilted = 0;      // data on the surface, but of a region with another normal
+  int behind = 0;      // data behind the surface: the sensor saw through it
+  int front = 0;       // data before the surface: hidden by something
+  int missing = 0;     // no data
+  double owned = 0.0;  // explained cells, each counting the share of its region that the object explains
+  int faces = 0;       // drawn faces of at least 12 cells ...
+  int faces_found = 0; // ... and of them those of which at least half is explained
+  double residual = 0.0;  // root mean square distance of explained cells across the surface. Unit: mm.
+  std::vector<int> explained_of_region;  // cells, by region
+};
+
+[[nodiscard]] PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model,
+                                           const LabelledScan& scan, const EvidenceOptions& options = {});
+
+}  // namespace foresight

@@ -1,0 +1,121 @@
+#include "runtime/rendering.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace foresight {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// The value a * column + b * row + c over the image; distances to edges and inverse depths are such functions.
+struct Affine {
+  double a = 0.0;
+  double b = 0.0;
+  double c = 0.0;
+};
+
+// >= 0 on the side of the edge p-q where the triangle lies, for triangles with positive area in (column, row).
+Affine edge_function(const Vector2d& p, const Vector2d& q) {
+  const Vector2d d = q - p;
+  return {-d.y(), d.x(), d.y() * p.x() - d.x() * p.y()};
+}
+
+// The inverse depth of a plane normal . p = offset: 1 / z = normal . ray / offset, and the ray is affine in the cell.
+Affine inverse_depth(const Vector3d& normal, double offset, const PinholeCamera& camera) {
+  const double a = normal.x() / camera.fx;
+  const double b = normal.y() / camera.fy;
+  return {a / offset, b / offset, (normal.z() - a * camera.cx - b * camera.cy) / offset};
+}
+
+
+// Columns of a row at which all edge functions are >= 0: [first, last], empty when first > last.
+std::array<int, 2> inside(const std::array<Affine, 3>& edges, double row, int first_column, int last_column) {
+  double low = first_column;
+  double high = last_column;
+  for (const Affine& edge : edges) {
+    const double rest = edge.b * row + edge.c;
+    if (edge.a > 0.0) {
+      low = std::max(low, -rest / edge.a);
+    } else if (edge.a < 0.0) {
+      high = std::min(high, -rest / edge.a);
+    } else if (rest < 0.0) {
+      return {1, 0};
+    }
+  }
+  return {static_cast<int>(std::ceil(low)), static_cast<int>(std::floor(high))};
+}
+
+struct Corner {
+  Vector3d point;  // sensor frame. Unit: mm.
+  Vector2d image;  // column, row
+};
+
+void draw(const std::array<const Corner*, 3>& corners, int triangle, const PinholeCamera& camera, Rendering& rendering) {
+  const Vector3d normal = (corners[1]->point - corners[0]->point).cross(corners[2]->point - corners[0]->point);
+  const double offset = normal.dot(corners[0]->point);
+  rendering.normal[static_cast<std::size_t>(triangle)] = normal.stableNormalized().cast<float>();
+  if (!(offset < 0.0)) return;  // seen from behind or edge-on
+  // Facing triangles run counter-clockwise to the eye; with rows downwards their area in (column, row) is negative.
+  const Vector2d& p = corners[0]->image;
+  const Vector2d& q = corners[2]->image;
+  const Vector2d& r = corners[1]->image;
+  const std::array<Affine, 3> edges = {edge_function(p, q), edge_function(q, r), edge_function(r, p)};
+  const Affine inverse = inverse_depth(normal, offset, camera);
+  const auto [lowest, highest] = std::minmax({p.y(), q.y(), r.y()});
+  const int last_row = std::min(rendering.first_row + rendering.rows - 1, static_cast<int>(std::floor(highest)));
+  for (int row = std::max(rendering.first_row, static_cast<int>(std::ceil(lowest))); row <= last_row; ++row) {
+    const auto [first, last] =
+        inside(edges, row, rendering.first_column, rendering.first_column + rendering.columns - 1);
+    for (int column = first; column <= last; ++column) {
+      const auto depth = static_cast<float>(1.0 / (inverse.a * column + inverse.b * row + inverse.c));
+      const auto cell =
+          static_cast<std::size_t>(rendering.cell(row - rendering.first_row, column - rendering.first_column));
+      if (rendering.triangle[cell] >= 0 && rendering.depth[cell] <= depth) continue;
+      rendering.depth[cell] = depth;
+      rendering.triangle[cell] = triangle;
+    }
+  }
+}
+
+}  // namespace
+
+Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const PinholeCamera& camera) {
+  Rendering rendering;
+  std::vector<Corner> corners;
+  corners.reserve(model.vertices.size());
+  Vector2d low(camera.columns, camera.rows);
+  Vector2d high(-1.0, -1.0);
+  for (const Eigen::Vector3f& vertex : model.vertices) {
+    Corner corner;
+    corner.point = T_sensor_model * vertex.cast<double>();
+    if (!(corner.point.z() > 0.0)) return rendering;
+    corner.image = camera.project(corner.point);
+    low = low.cwiseMin(corner.image);
+    high = high.cwiseMax(corner.image);
+    corners.push_back(corner);
+  }
+  rendering.first_column = std::max(0, static_cast<int>(std::ceil(std::max(low.x(), 0.0))));
+  rendering.first_row = std::max(0, static_cast<int>(std::ceil(std::max(low.y(), 0.0))));
+  rendering.columns =
+      std::max(0, static_cast<int>(std::floor(std::min(high.x(), camera.columns - 1.0))) - rendering.first_column + 1);
+  rendering.rows =
+      std::max(0, static_cast<int>(std::floor(std::min(high.y(), camera.rows - 1.0))) - rendering.first_row + 1);
+  const auto cells = static_cast<std::size_t>(rendering.rows) * static_cast<std::size_t>(rendering.columns);
+  rendering.depth.assign(cells, 0.0F);
+  rendering.triangle.assign(cells, -1);
+  rendering.normal.assign(model.triangles.size(), Eigen::Vector3f::Zero());
+  if (cells == 0) return rendering;
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const auto& indices = model.triangles[t];
+    draw({&corners[static_cast<std::size_t>(indices[0])], &corners[static_cast<std::size_t>(indices[1])],
+          &corners[static_cast<std::size_t>(indices[2])]},
+         static_cast<int>(t), camera, rendering);
+  }
+  return rendering;
+}
+
+}  // namespace foresight

@@ -1,0 +1,30 @@
+// What the sensor would see of an object alone: its CAD surface drawn at a pose.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "common/camera.h"
+#include "common/compiled_model.h"
+#include "common/pose.h"
+
+namespace foresight {
+
+// A window of the image grid. A cell that shows nothing has depth 0.
+struct Rendering {
+  int first_row = 0;  // of the window, in the image
+  int first_column = 0;
+  int rows = 0;
+  int columns = 0;
+  std::vector<float> depth;             // z of the nearest surface, row by row. Unit: mm.
+  std::vector<int> triangle;            // of the model, -1 where nothing is shown
+  std::vector<Eigen::Vector3f> normal;  // by triangle, sensor frame, outward
+
+  [[nodiscard]] int cell(int row, int column) const { return row * columns + column; }
+};
+
+// Draws the triangles that face the camera, the nearest one in each cell: a depth buffer. Exact at the cells' centres,
+// where the sensor's rays pass. Empty when any vertex lies behind the camera or all of it outside the image.
+[[nodiscard]] Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const PinholeCamera& camera);
+
+}  // namespace foresight
