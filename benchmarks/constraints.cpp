@@ -18,7 +18,7 @@ namespace {
 // What is drawn.
 struct FaceChoice {
   std::vector<std::string> objects = {"pencil_box", "castle", "rolodex", "stapler"};
-  int face = -1;  // -1: the largest of each object
+  int face = -1;  // -1: of each object the one whose area varies most from view to view
 };
 
 const char* unit_of(const std::string& attribute) {
@@ -26,41 +26,72 @@ const char* unit_of(const std::string& attribute) {
   return attribute == kRelationNames[kOrientation] ? "rad" : "mm";
 }
 
-// Share of the values in each bin from `first` on, bins counted from 0.
-Curve shares(const std::vector<double>& values, double bin_width, int first, int last) {
+constexpr int kDrawnBins = 60;  // finer than the compiled ones, which span all faces of a model
+
+// What one plot shows, in equal bins.
+struct DrawnRange {
+  double from = 0.0;
+  double to = 0.0;
+
+  [[nodiscard]] double bin_width() const { return (to - from) / kDrawnBins; }
+};
+
+// All samples and the bounds about the CAD value, with a margin.
+DrawnRange range_of(const AttributeSamples& attribute, const Constraint& bounds) {
+  DrawnRange range{bounds.low, bounds.high};
+  for (const std::vector<double>* values : {&attribute.samples, &attribute.held_out}) {
+    for (const double value : *values) {
+      range.from = std::min(range.from, value);
+      range.to = std::max(range.to, value);
+    }
+  }
+  const double margin = 0.03 * (range.to - range.from);
+  return {range.from - margin, range.to + margin};
+}
+
+// Share of the values in each bin.
+Curve shares(const std::vector<double>& values, const DrawnRange& range) {
+  std::vector<long> counts(kDrawnBins, 0);
+  for (const double value : values)
+    ++counts[static_cast<std::size_t>(std::clamp((value - range.from) / range.bin_width(), 0.0, kDrawnBins - 1.0))];
   Curve curve;
-  for (int bin = first; bin <= last; ++bin) {
-    const auto inside = std::count_if(values.begin(), values.end(), [&](double value) {
-      return static_cast<int>(std::floor(value / bin_width)) == bin;
-    });
-    curve.x.push_back((bin + 0.5) * bin_width);
-    curve.y.push_back(static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(1, values.size())));
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    curve.x.push_back(range.from + (static_cast<double>(bin) + 0.5) * range.bin_width());
+    curve.y.push_back(static_cast<double>(counts[bin]) / static_cast<double>(std::max<std::size_t>(1, values.size())));
   }
   return curve;
 }
 
-// A normal distribution as the mass of a bin about each place.
-Curve normal_curve(const Constraint& normal, double bin_width, double from, double to) {
-  constexpr int kPlaces = 300;
+// The compiled distribution: the mass of its bins, spread evenly over each.
+Curve compiled_curve(const AttributeSamples& attribute, const DrawnRange& range) {
+  constexpr int kPlaces = 1200;
   Curve curve;
   for (int i = 0; i <= kPlaces; ++i) {
-    const double x = from + (to - from) * i / kPlaces;
-    Constraint moved = normal;  // so that x is the middle of bin 0
-    moved.mean = normal.mean - x + 0.5 * bin_width;
+    const double x = range.from + (range.to - range.from) * i / kPlaces;
     curve.x.push_back(x);
-    curve.y.push_back(moved.probability(0.5 * bin_width, bin_width));
+    curve.y.push_back(attribute.density.probability(x) * range.bin_width() / attribute.bin_width);
   }
   return curve;
 }
 
-// Vertical lines.
-Curve lines_at(const std::vector<double>& places, double top) {
+// A normal distribution as the mass of a drawn bin about each place.
+Curve normal_curve(const Constraint& normal, const DrawnRange& range) {
+  constexpr int kPlaces = 300;
+  const double width = range.bin_width();
   Curve curve;
-  for (const double x : places) {
-    curve.x.insert(curve.x.end(), {x, x, x});
-    curve.y.insert(curve.y.end(), {0.0, top, std::nan("")});
+  for (int i = 0; i <= kPlaces; ++i) {
+    const double x = range.from + (range.to - range.from) * i / kPlaces;
+    Constraint moved = normal;  // so that x is the middle of bin 0
+    moved.mean = normal.mean - x + 0.5 * width;
+    curve.x.push_back(x);
+    curve.y.push_back(moved.probability(0.5 * width, width));
   }
   return curve;
+}
+
+// Two vertical lines, joined along the axis.
+Curve bounds_curve(double low, double high, double top) {
+  return {"", {low, low, high, high}, {top, 0, 0, top}, {}, {}};
 }
 
 double highest(const Curve& curve) { return *std::max_element(curve.y.begin(), curve.y.end()); }
@@ -68,17 +99,7 @@ double highest(const Curve& curve) { return *std::max_element(curve.y.begin(), c
 // In the manner of Figs. 2 and 6.
 Plot attribute_plot(const AttributeSamples& attribute, const std::string& title, const std::string& held_out) {
   const auto constraints = constraints_on(attribute);
-  double from = 0.8 * attribute.cad_value, to = 1.1 * attribute.cad_value;
-  for (const std::vector<double>* values : {&attribute.samples, &attribute.held_out}) {
-    for (const double value : *values) {
-      from = std::min(from, value);
-      to = std::max(to, value);
-    }
-  }
-  const double width = attribute.bin_width;
-  const int first = std::max(0, static_cast<int>(std::floor(from / width)) - 1);
-  const int last = static_cast<int>(std::floor(to / width)) + 1;
-
+  const DrawnRange range = range_of(attribute, constraints[5]);
   Plot plot;
   plot.title = title;
   plot.x_label = attribute.name + " (" + unit_of(attribute.name) + ")";
@@ -88,32 +109,38 @@ Plot attribute_plot(const AttributeSamples& attribute, const std::string& title,
     curve.style = style;
     plot.curves.push_back(std::move(curve));
   };
-  add(shares(attribute.samples, width, first, last),
-      "sensor model (" + std::to_string(attribute.samples.size()) + " samples)", Curve::Style::bars);
-  add(shares(attribute.held_out, width, first, last),
-      held_out + " (" + std::to_string(attribute.held_out.size()) + " samples)", Curve::Style::steps);
-  const double left = first * width, right = (last + 1) * width;
+  const auto count = [](const std::vector<double>& values) { return " (" + std::to_string(values.size()) + ")"; };
+  add(shares(attribute.samples, range), "sample views" + count(attribute.samples), Curve::Style::bars);
+  add(shares(attribute.held_out, range), held_out + count(attribute.held_out), Curve::Style::steps);
+  add(compiled_curve(attribute, range), "sensor model, compiled", Curve::Style::line);
   for (const std::size_t c : {1, 2}) {
     if (constraints[c].kind == ConstraintKind::normal)
-      add(normal_curve(constraints[c], width, left, right), kConstraintNames[c], Curve::Style::line);
+      add(normal_curve(constraints[c], range), kConstraintNames[c], Curve::Style::line);
   }
   double top = 0.0;
   for (const Curve& curve : plot.curves) top = std::max(top, highest(curve));
-  add(lines_at({constraints[5].low, constraints[5].high}, top), attribute.angle ? "CAD ± 3 sigma" : "CAD 0.8 to 1.1",
-      Curve::Style::line);
-  add(lines_at({attribute.cad_value}, top), "CAD value", Curve::Style::line);
+  add(bounds_curve(constraints[5].low, constraints[5].high, top),
+      attribute.angle ? "CAD value ± 3 sigma" : "CAD value × 0.8 to 1.1", Curve::Style::line);
+  add(bounds_curve(attribute.cad_value, attribute.cad_value, top), "CAD value", Curve::Style::line);
   return plot;
 }
 
-// The face that was chosen, or the largest; -1 when no view shows it.
+// Standard deviation over mean of the area in the sample views; 0 for faces seen too rarely to tell.
+double area_spread(const ConstraintSubject& subject) {
+  constexpr std::size_t kFewestSamples = 80;  // a quarter of the sample views
+  const AttributeSamples& area = subject.attributes[kArea];
+  const Constraint fitted = constraints_on(area)[1];
+  return area.samples.size() < kFewestSamples ? 0.0 : fitted.sigma / fitted.mean;
+}
+
+// The face that was chosen, or that with the largest spread; -1 when no view shows it.
 int subject_to_draw(const std::vector<ConstraintSubject>& subjects, const std::string& object, int face) {
   int chosen = -1;
   for (std::size_t s = 0; s < subjects.size(); ++s) {
     const ConstraintSubject& subject = subjects[s];
     if (subject.object != object || subject.faces.size() != 1) continue;
     if (face >= 0 ? subject.faces[0] == face
-                  : chosen < 0 || subject.attributes[kArea].cad_value >
-                                      subjects[static_cast<std::size_t>(chosen)].attributes[kArea].cad_value)
+                  : chosen < 0 || area_spread(subject) > area_spread(subjects[static_cast<std::size_t>(chosen)]))
       chosen = static_cast<int>(s);
   }
   return chosen;
@@ -251,7 +278,8 @@ Experiment add_constraints(CLI::App& app) {
   add_object_options(*command, *options);
   command->remove_option(command->get_option("--database"));  // it keeps densities, not samples
   command->add_option("--object", choice->objects, "Objects to draw a face of")->capture_default_str();
-  command->add_option("--face", choice->face, "Face to draw, by its number; the largest of each object when not given")
+  command
+      ->add_option("--face", choice->face, "Face to draw, by its number; the one whose area varies most when not given")
       ->check(CLI::NonNegativeNumber);
   return {command, [options, choice, folder] {
             run_constraints(*options, *choice, *folder);
