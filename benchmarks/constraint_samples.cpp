@@ -129,14 +129,15 @@ std::vector<std::vector<ViewSample>> measured_views(const std::vector<CadModel>&
 }
 
 std::vector<ConstraintSubject> subjects_of(const CadModel& model, const std::vector<ViewSample>& samples,
-                                           const std::vector<ViewSample>& held_out, const SensorModel& sensor) {
+                                           const std::vector<ViewSample>& held_out, const SensorModel& sensor,
+                                           const DensityOptions& density) {
   Subjects subjects;
   add_views(model, sensor, samples, &AttributeSamples::samples, subjects);
   add_views(model, sensor, held_out, &AttributeSamples::held_out, subjects);
 
   CompiledModel compiled;
   compiled.faces.resize(model.faces.size());
-  estimate_statistics(samples, {}, compiled);
+  estimate_statistics(samples, density, compiled);
   for (std::size_t face = 0; face < compiled.faces.size(); ++face) {
     const auto found = subjects.find({1, {static_cast<int>(face)}});
     if (found != subjects.end()) set_densities(compiled.faces[face].densities, found->second);

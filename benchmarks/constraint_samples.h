@@ -42,9 +42,9 @@ struct ConstraintSubject {
                                                                   const SensorModel& sensor, const std::string& abw);
 
 // Every face and pair of faces of the model that a sample view or a held-out view shows; faces first, both ascending.
-// Densities are compiled with the default options. sensor: of the held-out views, for the spread about CAD values.
+// sensor: of the held-out views, for the spread about CAD values. density: how densities are compiled.
 [[nodiscard]] std::vector<ConstraintSubject> subjects_of(const CadModel& model, const std::vector<ViewSample>& samples,
                                                          const std::vector<ViewSample>& held_out,
-                                                         const SensorModel& sensor);
+                                                         const SensorModel& sensor, const DensityOptions& density = {});
 
 }  // namespace foresight

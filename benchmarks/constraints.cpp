@@ -15,8 +15,9 @@
 namespace foresight {
 namespace {
 
-// What is drawn.
-struct FaceChoice {
+// What is drawn, and how the sensor model's distributions are compiled.
+struct ConstraintOptions {
+  DensityOptions density;
   std::vector<std::string> objects = {"pencil_box", "castle", "rolodex", "stapler"};
   int face = -1;  // -1: of each object the one whose area varies most from view to view
 };
@@ -46,7 +47,7 @@ DrawnRange range_of(const AttributeSamples& attribute, const Constraint& bounds)
     }
   }
   const double margin = 0.03 * (range.to - range.from);
-  return {range.from - margin, range.to + margin};
+  return {std::max(0.0, range.from - margin), range.to + margin};  // no attribute is negative
 }
 
 // Share of the values in each bin.
@@ -119,7 +120,7 @@ Plot attribute_plot(const AttributeSamples& attribute, const std::string& title,
   }
   double top = 0.0;
   for (const Curve& curve : plot.curves) top = std::max(top, highest(curve));
-  add(bounds_curve(constraints[5].low, constraints[5].high, top),
+  add(bounds_curve(std::max(range.from, constraints[5].low), constraints[5].high, top),
       attribute.angle ? "CAD value ± 3 sigma" : "CAD value × 0.8 to 1.1", Curve::Style::line);
   add(bounds_curve(attribute.cad_value, attribute.cad_value, top), "CAD value", Curve::Style::line);
   return plot;
@@ -176,7 +177,7 @@ void draw_face(const ConstraintResult& result, const std::string& object, int fa
   write_plots(output + "/constraints_" + object + "_" + std::to_string(subject.faces[0]) + ".svg", plots, 2);
 }
 
-void check_choice(const FaceChoice& choice, const std::vector<CadModel>& models) {
+void check_choice(const ConstraintOptions& choice, const std::vector<CadModel>& models) {
   for (const std::string& object : choice.objects) {
     const auto found =
         std::find_if(models.begin(), models.end(), [&](const CadModel& model) { return model.name == object; });
@@ -197,7 +198,7 @@ void score_all(const ExperimentOptions& options, ConstraintResult& result) {
 }
 
 // views(model index): the held-out views of a model.
-ConstraintResult compare(const ExperimentOptions& options, const std::string& scans,
+ConstraintResult compare(const ExperimentOptions& options, const DensityOptions& density, const std::string& scans,
                          const std::vector<CadModel>& models, const SensorModel& compile_sensor,
                          const SensorModel& scan_sensor,
                          const std::function<std::vector<ViewSample>(std::size_t)>& views) {
@@ -206,7 +207,7 @@ ConstraintResult compare(const ExperimentOptions& options, const std::string& sc
     const auto index = static_cast<std::size_t>(i);
     const std::vector<ViewSample> samples =
         sample_views(models[index], compile_sensor, segmentation_options_for(compile_sensor), {});
-    subjects[index] = subjects_of(models[index], samples, views(index), scan_sensor);
+    subjects[index] = subjects_of(models[index], samples, views(index), scan_sensor, density);
   });
   ConstraintResult result{scans, {}, {}};
   for (std::vector<ConstraintSubject>& of_model : subjects) {
@@ -216,29 +217,29 @@ ConstraintResult compare(const ExperimentOptions& options, const std::string& sc
   return result;
 }
 
-ConstraintResult compare_simulated(const ExperimentOptions& options, const FaceChoice& choice) {
+ConstraintResult compare_simulated(const ExperimentOptions& options, const ConstraintOptions& choice) {
   const SensorModel sensor =
       sensor_of(options.sensor_file.empty() ? project_path("models/sensors/scanner.textproto") : options.sensor_file);
   const SensorModel compile_sensor =
       options.compile_sensor_file.empty() ? sensor : sensor_of(options.compile_sensor_file);
   const std::vector<CadModel> models = read_objects(options, sensor);
   check_choice(choice, models);
-  ConstraintResult result = compare(options, "held-out views", models, compile_sensor, sensor, [&](std::size_t i) {
-    return random_views(models[i], sensor, options.n, options.seed);
-  });
+  ConstraintResult result =
+      compare(options, choice.density, "held-out views", models, compile_sensor, sensor,
+              [&](std::size_t i) { return random_views(models[i], sensor, options.n, options.seed); });
   for (const std::string& object : choice.objects) draw_face(result, object, choice.face, options.output);
   return result;
 }
 
 // The objects of the real scans are those of the data folder, and a face of each is drawn.
-ConstraintResult compare_real(ExperimentOptions options, const std::string& abw) {
+ConstraintResult compare_real(ExperimentOptions options, const DensityOptions& density, const std::string& abw) {
   options.cad_files = cad_files_in(abw + "/models");
   options.unit = "mm";
   const SensorModel sensor = sensor_of(project_path("models/sensors/abw.textproto"));
   const std::vector<CadModel> models = read_objects(options, sensor);
   const std::vector<std::vector<ViewSample>> measured = measured_views(models, sensor, abw);
   ConstraintResult result =
-      compare(options, "real scans", models, sensor, sensor, [&](std::size_t i) { return measured[i]; });
+      compare(options, density, "real scans", models, sensor, sensor, [&](std::size_t i) { return measured[i]; });
   for (const CadModel& model : models) draw_face(result, model.name, -1, options.output);
   return result;
 }
@@ -252,10 +253,11 @@ Table short_summary(const Table& summary) {
   return table;
 }
 
-void run_constraints(const ExperimentOptions& options, const FaceChoice& choice, const std::string& folder) {
+void run_constraints(const ExperimentOptions& options, const ConstraintOptions& choice, const std::string& folder) {
   make_folder(options.output);
   std::vector<ConstraintResult> results = {compare_simulated(options, choice)};
-  if (has_abw_scans(folder, "constraints on real scans")) results.push_back(compare_real(options, folder + "/abw"));
+  if (has_abw_scans(folder, "constraints on real scans"))
+    results.push_back(compare_real(options, choice.density, folder + "/abw"));
   const Table summary = constraint_summary(results, options.seed);
   write_csv(options, "constraints", constraint_table(results, options.seed));
   write_csv(options, "constraints_summary", summary);
@@ -266,7 +268,7 @@ void run_constraints(const ExperimentOptions& options, const FaceChoice& choice,
 
 Experiment add_constraints(CLI::App& app) {
   const auto options = std::make_shared<ExperimentOptions>();
-  const auto choice = std::make_shared<FaceChoice>();
+  const auto choice = std::make_shared<ConstraintOptions>();
   const auto folder = std::make_shared<std::string>();
   CLI::App* command =
       app.add_subcommand("constraints",
@@ -277,6 +279,14 @@ Experiment add_constraints(CLI::App& app) {
   add_data_option(*command, *folder);
   add_object_options(*command, *options);
   command->remove_option(command->get_option("--database"));  // it keeps densities, not samples
+  command
+      ->add_option("--bins", choice->density.bins,
+                   "Bins of the sensor model's distributions, as foresightc compile has")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  command->add_option("--kernel", choice->density.kernel, "Gaussian that smooths them, in bins; 0 = raw histogram")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
   command->add_option("--object", choice->objects, "Objects to draw a face of")->capture_default_str();
   command
       ->add_option("--face", choice->face, "Face to draw, by its number; the one whose area varies most when not given")
