@@ -1,130 +1,28 @@
 // Sections III and VI.A: how well the compiled distributions of attributes constrain matches, against what systems
 // without a sensor model use (Fig. 2) and on views they were not compiled from (Fig. 6).
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <functional>
 #include <iostream>
 #include <memory>
 
 #include "benchmarks/commands.h"
+#include "benchmarks/constraint_plots.h"
 #include "benchmarks/constraint_scores.h"
-#include "benchmarks/plot.h"
 #include "benchmarks/real_scans.h"
 #include "common/errors.h"
 
 namespace foresight {
 namespace {
 
+constexpr std::array<const char*, 4> kDrawnObjects = {"pencil_box", "castle", "rolodex", "stapler"};
+
 // What is drawn, and how the sensor model's distributions are compiled.
 struct ConstraintOptions {
   DensityOptions density;
-  std::vector<std::string> objects = {"pencil_box", "castle", "rolodex", "stapler"};
-  int face = -1;  // -1: of each object the one whose area varies most from view to view
+  std::vector<std::string> objects;  // empty: kDrawnObjects, or all where there are none of these
+  int face = -1;                     // -1: of each object the one whose area varies most from view to view
 };
-
-const char* unit_of(const std::string& attribute) {
-  if (attribute == kAttributeNames[kArea]) return "mm²";
-  return attribute == kRelationNames[kOrientation] ? "rad" : "mm";
-}
-
-constexpr int kDrawnBins = 60;  // finer than the compiled ones, which span all faces of a model
-
-// What one plot shows, in equal bins.
-struct DrawnRange {
-  double from = 0.0;
-  double to = 0.0;
-
-  [[nodiscard]] double bin_width() const { return (to - from) / kDrawnBins; }
-};
-
-// All samples and the bounds about the CAD value, with a margin.
-DrawnRange range_of(const AttributeSamples& attribute, const Constraint& bounds) {
-  DrawnRange range{bounds.low, bounds.high};
-  for (const std::vector<double>* values : {&attribute.samples, &attribute.held_out}) {
-    for (const double value : *values) {
-      range.from = std::min(range.from, value);
-      range.to = std::max(range.to, value);
-    }
-  }
-  const double margin = 0.03 * (range.to - range.from);
-  return {std::max(0.0, range.from - margin), range.to + margin};  // no attribute is negative
-}
-
-// Share of the values in each bin.
-Curve shares(const std::vector<double>& values, const DrawnRange& range) {
-  std::vector<long> counts(kDrawnBins, 0);
-  for (const double value : values)
-    ++counts[static_cast<std::size_t>(std::clamp((value - range.from) / range.bin_width(), 0.0, kDrawnBins - 1.0))];
-  Curve curve;
-  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
-    curve.x.push_back(range.from + (static_cast<double>(bin) + 0.5) * range.bin_width());
-    curve.y.push_back(static_cast<double>(counts[bin]) / static_cast<double>(std::max<std::size_t>(1, values.size())));
-  }
-  return curve;
-}
-
-// The compiled distribution: the mass of its bins, spread evenly over each.
-Curve compiled_curve(const AttributeSamples& attribute, const DrawnRange& range) {
-  constexpr int kPlaces = 1200;
-  Curve curve;
-  for (int i = 0; i <= kPlaces; ++i) {
-    const double x = range.from + (range.to - range.from) * i / kPlaces;
-    curve.x.push_back(x);
-    curve.y.push_back(attribute.density.probability(x) * range.bin_width() / attribute.bin_width);
-  }
-  return curve;
-}
-
-// A normal distribution as the mass of a drawn bin about each place.
-Curve normal_curve(const Constraint& normal, const DrawnRange& range) {
-  constexpr int kPlaces = 300;
-  const double width = range.bin_width();
-  Curve curve;
-  for (int i = 0; i <= kPlaces; ++i) {
-    const double x = range.from + (range.to - range.from) * i / kPlaces;
-    Constraint moved = normal;  // so that x is the middle of bin 0
-    moved.mean = normal.mean - x + 0.5 * width;
-    curve.x.push_back(x);
-    curve.y.push_back(moved.probability(0.5 * width, width));
-  }
-  return curve;
-}
-
-// Two vertical lines, joined along the axis.
-Curve bounds_curve(double low, double high, double top) {
-  return {"", {low, low, high, high}, {top, 0, 0, top}, {}, {}};
-}
-
-double highest(const Curve& curve) { return *std::max_element(curve.y.begin(), curve.y.end()); }
-
-// In the manner of Figs. 2 and 6.
-Plot attribute_plot(const AttributeSamples& attribute, const std::string& title, const std::string& held_out) {
-  const auto constraints = constraints_on(attribute);
-  const DrawnRange range = range_of(attribute, constraints[5]);
-  Plot plot;
-  plot.title = title;
-  plot.x_label = attribute.name + " (" + unit_of(attribute.name) + ")";
-  plot.y_label = "share in a bin";
-  const auto add = [&](Curve curve, const std::string& label, Curve::Style style) {
-    curve.label = label;
-    curve.style = style;
-    plot.curves.push_back(std::move(curve));
-  };
-  const auto count = [](const std::vector<double>& values) { return " (" + std::to_string(values.size()) + ")"; };
-  add(shares(attribute.samples, range), "sample views" + count(attribute.samples), Curve::Style::bars);
-  add(shares(attribute.held_out, range), held_out + count(attribute.held_out), Curve::Style::steps);
-  add(compiled_curve(attribute, range), "sensor model, compiled", Curve::Style::line);
-  for (const std::size_t c : {1, 2}) {
-    if (constraints[c].kind == ConstraintKind::normal)
-      add(normal_curve(constraints[c], range), kConstraintNames[c], Curve::Style::line);
-  }
-  double top = 0.0;
-  for (const Curve& curve : plot.curves) top = std::max(top, highest(curve));
-  add(bounds_curve(std::max(range.from, constraints[5].low), constraints[5].high, top),
-      attribute.angle ? "CAD value ± 3 sigma" : "CAD value × 0.8 to 1.1", Curve::Style::line);
-  add(bounds_curve(attribute.cad_value, attribute.cad_value, top), "CAD value", Curve::Style::line);
-  return plot;
-}
 
 // Standard deviation over mean of the area in the sample views; 0 for faces seen too rarely to tell.
 double area_spread(const ConstraintSubject& subject) {
@@ -134,17 +32,19 @@ double area_spread(const ConstraintSubject& subject) {
   return area.samples.size() < kFewestSamples ? 0.0 : fitted.sigma / fitted.mean;
 }
 
-// The face that was chosen, or that with the largest spread; -1 when no view shows it.
-int subject_to_draw(const std::vector<ConstraintSubject>& subjects, const std::string& object, int face) {
-  int chosen = -1;
-  for (std::size_t s = 0; s < subjects.size(); ++s) {
-    const ConstraintSubject& subject = subjects[s];
+double held_out_count(const ConstraintSubject& subject) {
+  return static_cast<double>(subject.attributes[kArea].held_out.size());
+}
+
+// The chosen face of an object, or that for which `worth` is most; null when no view shows it.
+const ConstraintSubject* face_to_draw(const std::vector<ConstraintSubject>& subjects, const std::string& object,
+                                      int face, double (*worth)(const ConstraintSubject&)) {
+  const ConstraintSubject* best = nullptr;
+  for (const ConstraintSubject& subject : subjects) {
     if (subject.object != object || subject.faces.size() != 1) continue;
-    if (face >= 0 ? subject.faces[0] == face
-                  : chosen < 0 || area_spread(subject) > area_spread(subjects[static_cast<std::size_t>(chosen)]))
-      chosen = static_cast<int>(s);
+    if (face >= 0 ? subject.faces[0] == face : best == nullptr || worth(subject) > worth(*best)) best = &subject;
   }
-  return chosen;
+  return best;
 }
 
 // The pair with this face that most held-out views show, or null.
@@ -159,13 +59,7 @@ const ConstraintSubject* partner_to_draw(const std::vector<ConstraintSubject>& s
   return best;
 }
 
-void draw_face(const ConstraintResult& result, const std::string& object, int face, const std::string& output) {
-  const int index = subject_to_draw(result.subjects, object, face);
-  if (index < 0) {
-    std::cout << "constraints: no view shows face " << face << " of " << object << ", nothing is drawn\n";
-    return;
-  }
-  const ConstraintSubject& subject = result.subjects[static_cast<std::size_t>(index)];
+void draw_face(const ConstraintResult& result, const ConstraintSubject& subject, const std::string& output) {
   std::vector<Plot> plots;
   for (const AttributeSamples& attribute : subject.attributes)
     plots.push_back(attribute_plot(attribute, subject.name(), result.scans));
@@ -174,7 +68,7 @@ void draw_face(const ConstraintResult& result, const std::string& object, int fa
     for (const AttributeSamples& attribute : pair->attributes)
       plots.push_back(attribute_plot(attribute, pair->name(), result.scans));
   }
-  write_plots(output + "/constraints_" + object + "_" + std::to_string(subject.faces[0]) + ".svg", plots, 2);
+  write_plots(output + "/constraints_" + subject.object + "_" + std::to_string(subject.faces[0]) + ".svg", plots, 2);
 }
 
 void check_choice(const ConstraintOptions& choice, const std::vector<CadModel>& models) {
@@ -187,6 +81,17 @@ void check_choice(const ConstraintOptions& choice, const std::vector<CadModel>& 
       throw UsageError("--face", object + " has " + std::to_string(found->faces.size()) + " faces",
                        "give a number from 0 to " + std::to_string(found->faces.size() - 1));
   }
+}
+
+std::vector<std::string> objects_to_draw(const ConstraintOptions& choice, const std::vector<CadModel>& models) {
+  if (!choice.objects.empty()) return choice.objects;
+  std::vector<std::string> all, drawn;
+  for (const CadModel& model : models) {
+    all.push_back(model.name);
+    if (std::find(kDrawnObjects.begin(), kDrawnObjects.end(), model.name) != kDrawnObjects.end())
+      drawn.push_back(model.name);
+  }
+  return drawn.empty() ? all : drawn;
 }
 
 void score_all(const ExperimentOptions& options, ConstraintResult& result) {
@@ -227,11 +132,18 @@ ConstraintResult compare_simulated(const ExperimentOptions& options, const Const
   ConstraintResult result =
       compare(options, choice.density, "held-out views", models, compile_sensor, sensor,
               [&](std::size_t i) { return random_views(models[i], sensor, options.n, options.seed); });
-  for (const std::string& object : choice.objects) draw_face(result, object, choice.face, options.output);
+  for (const std::string& object : objects_to_draw(choice, models)) {
+    const ConstraintSubject* face = face_to_draw(result.subjects, object, choice.face, area_spread);
+    if (face != nullptr) {
+      draw_face(result, *face, options.output);
+    } else {
+      std::cout << "constraints: no view shows that face of " << object << ", nothing is drawn\n";
+    }
+  }
   return result;
 }
 
-// The objects of the real scans are those of the data folder, and a face of each is drawn.
+// The objects of the real scans are those of the data folder; of each, the face measured most often is drawn.
 ConstraintResult compare_real(ExperimentOptions options, const DensityOptions& density, const std::string& abw) {
   options.cad_files = cad_files_in(abw + "/models");
   options.unit = "mm";
@@ -240,7 +152,10 @@ ConstraintResult compare_real(ExperimentOptions options, const DensityOptions& d
   const std::vector<std::vector<ViewSample>> measured = measured_views(models, sensor, abw);
   ConstraintResult result =
       compare(options, density, "real scans", models, sensor, sensor, [&](std::size_t i) { return measured[i]; });
-  for (const CadModel& model : models) draw_face(result, model.name, -1, options.output);
+  for (const CadModel& model : models) {
+    const ConstraintSubject* face = face_to_draw(result.subjects, model.name, -1, held_out_count);
+    if (face != nullptr) draw_face(result, *face, options.output);
+  }
   return result;
 }
 
@@ -287,7 +202,7 @@ Experiment add_constraints(CLI::App& app) {
   command->add_option("--kernel", choice->density.kernel, "Gaussian that smooths them, in bins; 0 = raw histogram")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
-  command->add_option("--object", choice->objects, "Objects to draw a face of")->capture_default_str();
+  command->add_option("--object", choice->objects, "Objects to draw a face of; four of the eight when not given");
   command
       ->add_option("--face", choice->face, "Face to draw, by its number; the one whose area varies most when not given")
       ->check(CLI::NonNegativeNumber);
