@@ -26,6 +26,8 @@ struct Experiment {
 [[nodiscard]] Experiment add_localization(CLI::App& app);    // Table I
 [[nodiscard]] Experiment add_real(CLI::App& app);            // real scans
 [[nodiscard]] Experiment add_search(CLI::App& app);          // Section VI.C, against the interpretation tree
+[[nodiscard]] Experiment add_segmentation(CLI::App& app);    // extraction alone, real scans
+[[nodiscard]] Experiment add_constraints(CLI::App& app);     // Sections III and VI.A
 
 // Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
 void add_common_options(CLI::App& command, ExperimentOptions& options, int n);

@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
                                                           foresight::add_twins(app),           //
                                                           foresight::add_unknown(app),         //
                                                           foresight::add_real(app),            //
-                                                          foresight::add_search(app)};
+                                                          foresight::add_search(app),          //
+                                                          foresight::add_segmentation(app),    //
+                                                          foresight::add_constraints(app)};
   return foresight::run_program("experiments", app, argc, argv, [&] {
     for (const foresight::Experiment& experiment : experiments) {
       if (experiment.command->parsed()) return experiment.run();

@@ -11,7 +11,7 @@
 namespace foresight {
 namespace {
 
-constexpr int kViewsTried = 400;                                  // of one object
+constexpr int kViewsTried = 100;                                  // of one object
 constexpr double kLargestTilt = 12.0 * std::numbers::pi / 180.0;  // of the face from the line of sight
 constexpr int kFewestCells = 12;                                  // of a visible face
 

@@ -21,21 +21,6 @@ SimulatedScan view_scan(const CadModel& model, const Eigen::Vector3d& direction,
   return SimulatedScene(std::span(&object, 1)).scan(sensor, random);
 }
 
-ViewSample observe(const std::vector<DescribedRegion>& regions, const std::vector<CellLabel>& labels) {
-  ViewSample sample;
-  const std::vector<RegionFace> paired = pair_regions_with_faces(regions, labels);
-  for (std::size_t i = 0; i < paired.size(); ++i) {
-    const DescribedRegion& region = regions[static_cast<std::size_t>(paired[i].region)];
-    sample.faces.push_back({paired[i].face, region.attributes});
-    for (std::size_t j = 0; j < i; ++j) {
-      if (paired[i].face == paired[j].face) continue;
-      const auto [first, second] = std::minmax(paired[i].face, paired[j].face);
-      sample.pairs.push_back({first, second, relate(region, regions[static_cast<std::size_t>(paired[j].region)])});
-    }
-  }
-  return sample;
-}
-
 }  // namespace
 
 std::vector<RegionFace> pair_regions_with_faces(const std::vector<DescribedRegion>& regions,
@@ -55,20 +40,43 @@ std::vector<RegionFace> pair_regions_with_faces(const std::vector<DescribedRegio
   return pairs;
 }
 
-std::vector<ViewSample> sample_views(const CadModel& model, const SensorModel& sensor,
-                                     const SegmentationOptions& segmentation, const FaceSampleOptions& options,
-                                     const std::function<void(int)>& progress) {
-  const ViewingSphere sphere(options.views);
-  std::vector<ViewSample> samples(static_cast<std::size_t>(sphere.size()));
+ViewSample view_sample(const std::vector<DescribedRegion>& regions, const std::vector<RegionFace>& paired) {
+  ViewSample sample;
+  for (std::size_t i = 0; i < paired.size(); ++i) {
+    const DescribedRegion& region = regions[static_cast<std::size_t>(paired[i].region)];
+    sample.faces.push_back({paired[i].face, region.attributes});
+    for (std::size_t j = 0; j < i; ++j) {
+      if (paired[i].face == paired[j].face) continue;
+      const auto [first, second] = std::minmax(paired[i].face, paired[j].face);
+      sample.pairs.push_back({first, second, relate(region, regions[static_cast<std::size_t>(paired[j].region)])});
+    }
+  }
+  return sample;
+}
+
+std::vector<ViewSample> sample_directions(const CadModel& model, const SensorModel& sensor,
+                                          const SegmentationOptions& segmentation,
+                                          std::span<const Eigen::Vector3d> directions, std::uint64_t seed,
+                                          const std::function<void(int)>& progress) {
+  std::vector<ViewSample> samples(directions.size());
   std::atomic<int> done = 0;
-  tbb::parallel_for(0, sphere.size(), [&](int view) {
-    const SimulatedScan scan = view_scan(model, sphere.centre(view), sensor, Random(options.seed, static_cast<std::uint64_t>(view)));
+  tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t view) {
+    const SimulatedScan scan = view_scan(model, directions[view], sensor, Random(seed, view));
     const auto regions = extract_regions(scan.image, sensor.camera, segmentation);
-    samples[static_cast<std::size_t>(view)] = observe(regions, scan.labels);
+    samples[view] = view_sample(regions, pair_regions_with_faces(regions, scan.labels));
     const int count = ++done;
     if (progress) progress(count);
   });
   return samples;
+}
+
+std::vector<ViewSample> sample_views(const CadModel& model, const SensorModel& sensor,
+                                     const SegmentationOptions& segmentation, const FaceSampleOptions& options,
+                                     const std::function<void(int)>& progress) {
+  const ViewingSphere sphere(options.views);
+  std::vector<Eigen::Vector3d> directions;
+  for (int view = 0; view < sphere.size(); ++view) directions.push_back(sphere.centre(view));
+  return sample_directions(model, sensor, segmentation, directions, options.seed, progress);
 }
 
 }  // namespace foresight

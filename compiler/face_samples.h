@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -39,7 +40,18 @@ struct ViewSample {
   std::vector<PairObservation> pairs;
 };
 
-// All views of one model, in view order whatever the number of threads. progress(done) may be called from any thread.
+// The faces and pairs of faces that regions of one image show, given which region shows which face.
+[[nodiscard]] ViewSample view_sample(const std::vector<DescribedRegion>& regions,
+                                     const std::vector<RegionFace>& paired);
+
+// Views of one model from unit directions (model frame, object towards sensor), in their order whatever the number of
+// threads; distance, roll and noise of view i from stream i of the seed. progress(done) may be called from any thread.
+[[nodiscard]] std::vector<ViewSample> sample_directions(const CadModel& model, const SensorModel& sensor,
+                                                        const SegmentationOptions& segmentation,
+                                                        std::span<const Eigen::Vector3d> directions, std::uint64_t seed,
+                                                        const std::function<void(int)>& progress = {});
+
+// All views of one model from the viewing sphere, in view order whatever the number of threads. progress(done) may be called from any thread.
 [[nodiscard]] std::vector<ViewSample> sample_views(const CadModel& model, const SensorModel& sensor,
                                                    const SegmentationOptions& segmentation,
                                                    const FaceSampleOptions& options,

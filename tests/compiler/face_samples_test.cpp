@@ -6,6 +6,7 @@
 #include <atomic>
 #include <set>
 
+#include "common/viewing_sphere.h"
 #include "compiler/sensor_file.h"
 #include "tests/solids.h"
 
@@ -149,6 +150,29 @@ TEST(SampleViews, is_the_same_at_any_number_of_threads) {
   }
   expect_same(results[0], results[1]);
   expect_same(results[0], results[2]);
+}
+
+TEST(SampleDirections, from_the_viewing_sphere_are_the_sample_views) {
+  const ViewingSphere sphere(20);
+  std::vector<Eigen::Vector3d> directions;
+  for (int cell = 0; cell < sphere.size(); ++cell) directions.push_back(sphere.centre(cell));
+  const SensorModel sensor = noisy_sensor();
+  const CadModel step = test::make_step();
+  expect_same(sample_directions(step, sensor, segmentation_options_for(sensor), directions, 3),
+              sample_views(step, sensor, segmentation_options_for(sensor), views(20, 3)));
+}
+
+TEST(SampleDirections, look_at_the_face_that_points_to_the_sensor) {
+  const SensorModel sensor = paper_sensor();
+  const std::vector<Eigen::Vector3d> directions = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}};
+  const auto samples =
+      sample_directions(test::make_box(90, 70, 50), sensor, segmentation_options_for(sensor), directions, 1);
+  ASSERT_EQ(samples.size(), 3U);
+  const std::vector<int> faces = {1, 0, 3};  // top, bottom, right
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    ASSERT_EQ(samples[i].faces.size(), 1U) << i;
+    EXPECT_EQ(samples[i].faces[0].face, faces[i]);
+  }
 }
 
 TEST(SampleViews, depends_on_the_seed) {
