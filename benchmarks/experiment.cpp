@@ -81,6 +81,9 @@ Database database_of(const ExperimentOptions& options, const std::vector<CadMode
       throw InputError(options.database_file, "it holds an object named " + model.name + " that no CAD file describes",
                        "give the CAD files the database was compiled from with --cad");
     }
+    for (const std::string& name : options.methods) {
+      if (name == "two-way") check_method({}, database, options.database_file);
+    }
     return database;
   }
   const CompileOptions compile;
@@ -111,7 +114,7 @@ std::vector<ScoredObject> scored_objects(const std::vector<CadModel>& models) {
 }
 
 std::vector<std::string> method_names() {
-  std::vector<std::string> names = {"paper"};
+  std::vector<std::string> names = {"two-way", "paper"};
 #ifdef FORESIGHT_RIVALS
   for (const std::string& name : rival_names()) names.push_back(name);
 #endif
@@ -122,8 +125,9 @@ std::vector<Contestant> contestants(const ExperimentOptions& options, const std:
                                     const SensorModel& sensor, const Database& database) {
   std::vector<Contestant> result;
   for (const std::string& name : options.methods) {
-    if (name == "paper") {
-      const RecognizeOptions method = options.method;
+    if (name == "paper" || name == "two-way") {
+      RecognizeOptions method = options.method;
+      method.method = name == "paper" ? Method::paper : Method::two_way;
       result.push_back({name, [&database, method](const RangeImage& image, const PinholeCamera& camera) {
                           return recognize(image, camera, database, method);
                         }});

@@ -23,7 +23,7 @@ struct ExperimentOptions {
   std::string output = "results";      // folder
   std::string progress = "auto";
   std::uint64_t seed = 1;
-  std::vector<std::string> methods = {"paper"};  // each a set of rows; see method_names()
+  std::vector<std::string> methods = {"two-way", "paper"};  // each a set of rows; see method_names()
   int n = 0;                                     // scenes. Limit: >= 1.
   int jobs = 1;                                  // threads. Limit: >= 1.
   RecognizeOptions method;
@@ -55,7 +55,7 @@ struct Contestant {
   std::function<RecognitionResult(const RangeImage&, const PinholeCamera&)> recognize;
 };
 
-// What options.methods may name: "paper", and the rivals where they are built in (FORESIGHT_RIVALS).
+// What options.methods may name: "two-way" (the default method), "paper", and the rivals where they are built in (FORESIGHT_RIVALS).
 [[nodiscard]] std::vector<std::string> method_names();
 
 // The contestants of the options, in their order. The database must outlive them. Throws UsageError for a name that is

@@ -49,6 +49,28 @@ struct SurfaceTemplate {
   std::array<std::vector<int>, kAspectCells> aspects;            // faces visible from each cell of ViewingSphere(80), ascending
 };
 
+// What two-way verification counts, as shares: the inputs of an AcceptanceModel (runtime/pose_evidence.h).
+enum EvidenceFeature : int {
+  kOwnedShare = 0,     // explained cells, weighted by the share of their regions, of those not hidden
+  kContradictedShare,  // cells with data behind the surface or of another orientation
+  kMissingShare,       // cells without data
+  kHiddenShare,        // cells with data before the surface
+  kLogExplained,       // log(1 + explained cells) / 10
+  kFoundFaces,         // faces at least half explained, of those drawn
+};
+inline constexpr int kEvidenceFeatureCount = 6;
+
+// How probable it is that a pose with this evidence is right: a logistic model that the compiler fits to simulated right
+// and wrong poses of the object.
+struct AcceptanceModel {
+  std::array<double, kEvidenceFeatureCount> weights{};
+  double bias = 0.0;
+  // Share of explained cells at the pose of a hypothesis, before localization, below which no right pose came of it.
+  // Limit: 0 to 1.
+  double least_overlap = 0.0;
+  int samples = 0;  // simulated poses it was fitted to; 0: none, a database without acceptance models
+};
+
 // One object, ready for recognition.
 struct CompiledModel {
   std::string name;
@@ -61,6 +83,7 @@ struct CompiledModel {
   std::vector<ModelFace> faces;
   std::vector<FacePair> pairs;                          // ascending by (first, second)
   SurfaceTemplate surface;
+  AcceptanceModel acceptance;
   std::vector<Eigen::Vector3f> vertices;                // of the CAD mesh, for overlays and for pose distances. Unit: mm.
   std::vector<std::array<int, 3>> triangles;            // indices into vertices
 };

@@ -49,6 +49,7 @@ CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, cons
   SurfaceTemplateOptions surface = options.surface;
   surface.distance = sensor.working_distance();
   model.surface = build_surface_template(cad, surface);
+  model.acceptance = train_acceptance(cad, model, new_database(sensor, options), options.acceptance);
   return model;
 }
 

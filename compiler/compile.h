@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/compiled_model.h"
+#include "compiler/acceptance_training.h"
 #include "compiler/cad_model.h"
 #include "compiler/face_samples.h"
 #include "compiler/surface_template.h"
@@ -15,6 +16,7 @@ namespace foresight {
 struct CompileOptions {
   FaceSampleOptions samples;
   DensityOptions density;
+  AcceptanceTrainingOptions acceptance;
   SurfaceTemplateOptions surface;    // its distance is overridden by the sensor's working distance
 };
 

@@ -97,6 +97,18 @@ void fill(v1::SurfaceTemplate& message, const SurfaceTemplate& surface) {
     append(*message.mutable_aspect_counts(), *message.mutable_aspect_faces(), aspect);
 }
 
+void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
+  message.set_owned_share(acceptance.weights[kOwnedShare]);
+  message.set_contradicted_share(acceptance.weights[kContradictedShare]);
+  message.set_missing_share(acceptance.weights[kMissingShare]);
+  message.set_hidden_share(acceptance.weights[kHiddenShare]);
+  message.set_log_explained(acceptance.weights[kLogExplained]);
+  message.set_found_faces(acceptance.weights[kFoundFaces]);
+  message.set_bias(acceptance.bias);
+  message.set_least_overlap(acceptance.least_overlap);
+  message.set_samples(static_cast<std::uint32_t>(acceptance.samples));
+}
+
 void fill(v1::Model& message, const CompiledModel& model) {
   message.set_name(model.name);
   message.set_cad_file(model.cad_file);
@@ -111,6 +123,7 @@ void fill(v1::Model& message, const CompiledModel& model) {
   for (const Eigen::Vector3f& vertex : model.vertices) append(*message.mutable_vertices(), vertex);
   for (const std::array<int, 3>& triangle : model.triangles)
     for (const int vertex : triangle) message.add_triangles(static_cast<std::uint32_t>(vertex));
+  if (model.acceptance.samples > 0) fill(*message.mutable_acceptance(), model.acceptance);
 }
 
 // Protocol Buffers promise the same bytes for the same message from one build of the library as long as no map is in

@@ -99,6 +99,7 @@ SegmentationOptions default_segmentation(const ReadyScan& scan) {
 int run_recognize(const RecognizeCommand& command) {
   check(command.options);
   const Database database = load_database(command.database);
+  check_method(command.options, database, command.database);
   const std::vector<std::string> names = names_of(database);
   bool any_found = false;
   bool all_complete = true;

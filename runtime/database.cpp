@@ -143,6 +143,21 @@ std::optional<SurfaceTemplate> from_message(const v1::SurfaceTemplate& message) 
   return surface;
 }
 
+// All zero where the message is absent.
+AcceptanceModel from_message(const v1::AcceptanceModel& message) {
+  AcceptanceModel acceptance;
+  acceptance.weights[kOwnedShare] = message.owned_share();
+  acceptance.weights[kContradictedShare] = message.contradicted_share();
+  acceptance.weights[kMissingShare] = message.missing_share();
+  acceptance.weights[kHiddenShare] = message.hidden_share();
+  acceptance.weights[kLogExplained] = message.log_explained();
+  acceptance.weights[kFoundFaces] = message.found_faces();
+  acceptance.bias = message.bias();
+  acceptance.least_overlap = message.least_overlap();
+  acceptance.samples = to_int(message.samples());
+  return acceptance;
+}
+
 CompiledModel from_message(const v1::Model& message, const std::string& file) {
   CompiledModel model;
   model.name = message.name();
@@ -168,6 +183,7 @@ CompiledModel from_message(const v1::Model& message, const std::string& file) {
   model.triangles.reserve(static_cast<std::size_t>(message.triangles_size()) / 3);
   for (int i = 0; i < message.triangles_size(); i += 3)
     model.triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
+  model.acceptance = from_message(message.acceptance());
   return model;
 }
 

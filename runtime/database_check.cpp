@@ -181,6 +181,16 @@ void check_mesh(const Place& place) {
       require(is_index(vertex, model.vertices.size()), place, "triangle", i, "it names a vertex that does not exist");
 }
 
+void check_acceptance(const Place& place) {
+  const AcceptanceModel& acceptance = place.model.acceptance;
+  require(acceptance.samples >= 0, place, "the acceptance model has too many samples");
+  const auto finite = [](double weight) { return std::isfinite(weight); };
+  require(std::all_of(acceptance.weights.begin(), acceptance.weights.end(), finite) && finite(acceptance.bias), place,
+          "a weight of the acceptance model is not finite");
+  require(acceptance.least_overlap >= 0.0 && acceptance.least_overlap <= 1.0, place,
+          "the least overlap of the acceptance model is outside 0 to 1");
+}
+
 void check_settings(const CompiledDatabase& database, const std::string& file) {
   try {
     check(database.sensor, file);
@@ -214,6 +224,7 @@ void check(const CompiledDatabase& database, const std::string& file) {
     check_pairs(database.density, place);
     check_surface(place);
     check_mesh(place);
+    check_acceptance(place);
   }
 }
 

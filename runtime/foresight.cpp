@@ -35,6 +35,7 @@ struct Recognizer::Impl {
 Recognizer::Recognizer(const std::string& database_file, const RecognizeOptions& options) {
   check(options);
   impl_ = std::make_unique<Impl>(Impl{load_database(database_file), options});
+  check_method(options, impl_->database, database_file);
 }
 
 Recognizer::~Recognizer() = default;

@@ -25,7 +25,7 @@ struct RangeImageView {
 struct Detection {
   std::string object;                      // name of the compiled model
   std::array<double, 16> T_sensor_model{}; // row-major; takes model points (mm) into the sensor frame (mm)
-  double score = 0.0;                      // 0 to 1; the paper's method: the matched fraction
+  double score = 0.0;                      // 0 to 1: how probably the pose is right; the paper's method: the matched fraction
   double matched = 0.0;                    // alpha, Section V.C
   double coherent = 0.0;                   // beta
   double occluding = 0.0;                  // gamma
@@ -43,6 +43,7 @@ struct Statistics {
   long hypotheses = 0;
   long verifications = 0;
   long energy_evaluations = 0;
+  long pose_checks = 0;                    // hypotheses looked at before localization; 0 with the paper's method
 };
 
 // Time of each stage. Unit: ms.
@@ -76,7 +77,12 @@ struct Potentials {
   PriorSign prior_sign = PriorSign::minus_log;
 };
 
+// How hypotheses are judged: by alpha, beta and gamma, the first acceptable one first (Section V.C); or by evidence for
+// and against them, as a calibrated probability, the best one first (runtime/two_way_search.h).
+enum class Method { two_way, paper };
+
 struct RecognizeOptions {
+  Method method = Method::two_way;
   Potentials potentials;
   Pruning pruning = Pruning::highest_confidence_first;
   Loss loss = Loss::lorentzian;

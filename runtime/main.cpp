@@ -13,6 +13,9 @@ void add_scan_options(CLI::App& command, ScanSource& source) {
 }
 
 void add_method_options(CLI::App& command, RecognizeOptions& options) {
+  static const std::map<std::string, Method> methods = {{"two-way", Method::two_way}, {"paper", Method::paper}};
+  command.add_option("--method", options.method, "Judge poses by evidence for and against (two-way, the default), or by alpha, beta, gamma (paper)")
+      ->transform(CLI::CheckedTransformer(methods, CLI::ignore_case).description(""));
   static const std::map<std::string, Loss> losses = {
       {"lorentzian", Loss::lorentzian}, {"tukey", Loss::tukey}, {"huber", Loss::huber}, {"gaussian", Loss::gaussian}};
   command.add_option("--loss", options.loss, "Error distribution of localization: lorentzian, tukey, huber, gaussian")

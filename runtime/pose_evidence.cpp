@@ -21,7 +21,47 @@ bool inner(const Rendering& drawn, int row, int column, double step) {
   return true;
 }
 
+// Whether a region that lies on the drawn surface is none of it.
+bool contradicts(const LabelledScan& scan, std::size_t region, const Eigen::Vector3d& normal,
+                 const EvidenceOptions& options) {
+  return scan.taken[region] || scan.regions[region].region.normal.dot(normal) < options.normal_cosine;
+}
+
 }  // namespace
+
+LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
+                        const std::vector<DescribedRegion>& regions) {
+  LabelledScan scan{image,
+                    camera,
+                    sensor,
+                    regions,
+                    std::vector<int>(image.points.size(), 0),
+                    std::vector<bool>(regions.size(), false)};
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    for (const int cell : regions[r].region.cells)
+      scan.labels[static_cast<std::size_t>(cell)] = static_cast<int>(r) + 1;
+  }
+  return scan;
+}
+
+std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence) {
+  const double drawn = std::max(1, evidence.drawn);
+  std::array<double, kEvidenceFeatureCount> features{};
+  features[kOwnedShare] = evidence.owned / std::max(1, evidence.drawn - evidence.front);
+  features[kContradictedShare] = (evidence.behind + evidence.tilted) / drawn;
+  features[kMissingShare] = evidence.missing / drawn;
+  features[kHiddenShare] = evidence.front / drawn;
+  features[kLogExplained] = 0.1 * std::log1p(evidence.explained);
+  features[kFoundFaces] = static_cast<double>(evidence.faces_found) / std::max(1, evidence.faces);
+  return features;
+}
+
+double probability_right(const AcceptanceModel& model, const PoseEvidence& evidence) {
+  const auto features = evidence_features(evidence);
+  double sum = model.bias;
+  for (std::size_t i = 0; i < features.size(); ++i) sum += model.weights[i] * features[i];
+  return 1.0 / (1.0 + std::exp(-sum));
+}
 
 PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,
                              const EvidenceOptions& options) {
@@ -59,8 +99,7 @@ PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_mo
         continue;
       }
       const int region = scan.labels[static_cast<std::size_t>(cell)] - 1;
-      if (region >= 0 && scan.regions[static_cast<std::size_t>(region)].region.normal.dot(normal.cast<double>()) <
-                             options.normal_cosine) {
+      if (region >= 0 && contradicts(scan, static_cast<std::size_t>(region), normal.cast<double>(), options)) {
         if (counts) ++evidence.tilted;
         continue;
       }

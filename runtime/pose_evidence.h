@@ -23,28 +23,39 @@ struct LabelledScan {
   const PinholeCamera& camera;
   const SensorModel& sensor;
   const std::vector<DescribedRegion>& regions;
-  std::vector<int> labels;  // label_image() of the regions
+  std::vector<int> labels;  // by cell: 0 = no region, i + 1 = regions[i]
+  std::vector<bool> taken;  // by region: explained by another object already, so that it contradicts this one
 };
 
+// No region taken. The scan refers to all that is given.
+[[nodiscard]] LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
+                                      const std::vector<DescribedRegion>& regions);
+
 struct EvidenceOptions {
-  double distance = 4.0;        // data this near to the drawn surface, across it, agree: 2 sigma, Section V.C. Unit: mm.
+  double distance = 4.0;  // data this near to the drawn surface, across it, agree: 2 sigma, Section V.C. Unit: mm.
   double normal_cosine = 0.87;  // of a region's normal with that of the surface it lies on. 30 degrees.
 };
 
 // Counts of the cells that would show the object, leaving out its outlines, where half a cell decides.
 struct PoseEvidence {
-  int drawn = 0;       // cells
-  int explained = 0;   // data on the surface, with its normal where a region tells it
-  int tilted = 0;      // data on the surface, but of a region with another normal
-  int behind = 0;      // data behind the surface: the sensor saw through it
-  int front = 0;       // data before the surface: hidden by something
-  int missing = 0;     // no data
-  double owned = 0.0;  // explained cells, each counting the share of its region that the object explains
-  int faces = 0;       // drawn faces of at least 12 cells ...
-  int faces_found = 0; // ... and of them those of which at least half is explained
+  int drawn = 0;          // cells
+  int explained = 0;      // data on the surface, with its normal where a region tells it
+  int tilted = 0;         // data on the surface, but of a region with another normal
+  int behind = 0;         // data behind the surface: the sensor saw through it
+  int front = 0;          // data before the surface: hidden by something
+  int missing = 0;        // no data
+  double owned = 0.0;     // explained cells, each counting the share of its region that the object explains
+  int faces = 0;          // drawn faces of at least 12 cells ...
+  int faces_found = 0;    // ... and of them those of which at least half is explained
   double residual = 0.0;  // root mean square distance of explained cells across the surface. Unit: mm.
   std::vector<int> explained_of_region;  // cells, by region
 };
+
+// The inputs of an acceptance model.
+[[nodiscard]] std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence);
+
+// How probably a pose with this evidence is right.
+[[nodiscard]] double probability_right(const AcceptanceModel& model, const PoseEvidence& evidence);
 
 [[nodiscard]] PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model,
                                            const LabelledScan& scan, const EvidenceOptions& options = {});

@@ -3,39 +3,21 @@
 #include <algorithm>
 
 #include "common/errors.h"
-#include "runtime/explained_regions.h"
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
-#include "runtime/pose_from_matches.h"
+#include "runtime/scan_context.h"
+#include "runtime/two_way_search.h"
+#include "runtime/verify_in_order.h"
 
 namespace foresight {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+std::vector<Label> prune(const HypothesisField& field, Pruning pruning) {
+  if (pruning == Pruning::none) return std::vector<Label>(field.matches.size(), kOn);
+  return highest_confidence_first(field);
+}
 
-// Adds the time since the last lap to a stage.
-class Stopwatch {
- public:
-  void lap(double& stage) {
-    const Clock::time_point now = Clock::now();
-    stage += std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  Clock::time_point last_ = Clock::now();
-};
-
-// What verifying needs to know about one scan.
-struct ScanContext {
-  const RangeImage& image;
-  const PinholeCamera& camera;
-  const Database& database;
-  const std::vector<DescribedRegion>& regions;
-  const HypothesisField& field;
-  NearestDataPoint data;
-  ViewingSphere sphere{kAspectCells};
-};
+}  // namespace
 
 LocalizationOptions localization_options(const RecognizeOptions& options) {
   LocalizationOptions localization;
@@ -50,75 +32,6 @@ VerificationOptions verification_options(const RecognizeOptions& options) {
   verification.largest_occluding = options.largest_occluding;
   return verification;
 }
-
-std::vector<Label> prune(const HypothesisField& field, Pruning pruning) {
-  if (pruning == Pruning::none) return std::vector<Label>(field.matches.size(), kOn);
-  return highest_confidence_first(field);
-}
-
-std::optional<Pose> estimate_pose(const ScanContext& scan, const ObjectHypothesis& hypothesis) {
-  std::vector<RegionFaceMatch> matches;
-  for (const int index : hypothesis.matches) {
-    const Match& match = scan.field.matches[static_cast<std::size_t>(index)];
-    matches.push_back({&scan.regions[static_cast<std::size_t>(match.region)], &scan.database.face(match.face)});
-  }
-  return pose_from_matches(matches);
-}
-
-Detection make_detection(const ScanContext& scan, const ObjectHypothesis& hypothesis, const RefinedPose& refined, int rank) {
-  Detection detection = to_detection(scan.database.models()[static_cast<std::size_t>(hypothesis.model)], refined);
-  detection.rank = rank;
-  for (const int index : hypothesis.matches) {
-    const Match& match = scan.field.matches[static_cast<std::size_t>(index)];
-    detection.faces.push_back(scan.database.faces()[static_cast<std::size_t>(match.face)].face);
-    detection.regions.push_back(match.region);
-  }
-  return detection;
-}
-
-bool uses_any(const HypothesisField& field, const ObjectHypothesis& hypothesis, const std::vector<bool>& taken) {
-  return std::any_of(hypothesis.matches.begin(), hypothesis.matches.end(), [&](int index) {
-    return taken[static_cast<std::size_t>(field.matches[static_cast<std::size_t>(index)].region)];
-  });
-}
-
-// Section V.C: each hypothesis in order is located, refined and verified; an accepted one drops its rivals.
-void verify_in_order(const ScanContext& scan, const std::vector<ObjectHypothesis>& hypotheses,
-                     const RecognizeOptions& options, const Deadline& deadline, RecognitionResult& result) {
-  std::vector<bool> taken(scan.regions.size(), false);
-  Stopwatch watch;
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    const ObjectHypothesis& hypothesis = hypotheses[i];
-    if (uses_any(scan.field, hypothesis, taken)) continue;
-    if (deadline && Clock::now() >= *deadline) {
-      result.complete = false;
-      return;
-    }
-    const std::optional<Pose> start = estimate_pose(scan, hypothesis);
-    if (!start) continue;
-    const CompiledModel& model = scan.database.models()[static_cast<std::size_t>(hypothesis.model)];
-    RefinedPose refined;
-    refined.localization = localize(model, scan.sphere, *start, scan.data, localization_options(options));
-    watch.lap(result.milliseconds.localize);
-    refined.verification = verify(model, scan.sphere, refined.localization.T_sensor_model, scan.image, scan.camera,
-                                  scan.data, verification_options(options));
-    ++result.statistics.verifications;
-    result.statistics.energy_evaluations += refined.localization.energy_evaluations;
-    if (refined.verification.accepted) {
-      result.detections.push_back(make_detection(scan, hypothesis, refined, static_cast<int>(i) + 1));
-      for (const int region : result.detections.back().regions) taken[static_cast<std::size_t>(region)] = true;
-      for (const int region : explained_regions(model, refined.localization.T_sensor_model, scan.image, scan.regions)) {
-        taken[static_cast<std::size_t>(region)] = true;
-      }
-    }
-    watch.lap(result.milliseconds.verify);
-    const auto reached = [](auto count, int most) { return most > 0 && count >= static_cast<decltype(count)>(most); };
-    if (reached(result.detections.size(), options.most_detections)) return;
-    if (reached(result.statistics.verifications, options.most_verifications)) return;
-  }
-}
-
-}  // namespace
 
 void check(const RecognizeOptions& options) {
   const auto fraction = [](double value, const char* name) {
@@ -137,6 +50,16 @@ void check(const RecognizeOptions& options) {
   potential(options.potentials.contradiction_on_off, "contradiction_on_off");
   if (options.most_detections < 0) throw UsageError("most_detections", "negative", "give 0 for no limit, or a count");
   if (options.most_verifications < 0) throw UsageError("most_verifications", "negative", "give 0 for no limit, or a count");
+}
+
+void check_method(const RecognizeOptions& options, const Database& database, const std::string& file) {
+  if (options.method == Method::paper) return;
+  for (const CompiledModel& model : database.models()) {
+    if (model.acceptance.samples > 0) continue;
+    throw DatabaseError(DatabaseFault::incompatible, file,
+                        "object " + model.name + " has no acceptance model, which the two-way method needs",
+                        "compile it again with this version of foresightc, or use --method paper");
+  }
 }
 
 RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
@@ -165,7 +88,11 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   if (!hypotheses.empty()) {
     const ScanContext scan{image, camera, database, regions, field, NearestDataPoint(image)};
     watch.lap(result.milliseconds.localize);  // the k-d tree serves localization
-    verify_in_order(scan, hypotheses, options, deadline, result);                                    // Section V
+    if (options.method == Method::paper) {
+      verify_in_order(scan, hypotheses, options, deadline, result);                                  // Section V
+    } else {
+      search_two_way(scan, hypotheses, options, deadline, result);
+    }
   }
   total.lap(result.milliseconds.total);
   return result;

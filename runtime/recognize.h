@@ -16,9 +16,16 @@ namespace foresight {
 
 void check(const RecognizeOptions& options);  // throws UsageError
 
+// Throws DatabaseError naming the file when the method of the options needs what the database does not hold.
+void check_method(const RecognizeOptions& options, const Database& database, const std::string& file);
+
+// The options of single stages.
+[[nodiscard]] LocalizationOptions localization_options(const RecognizeOptions& options);
+[[nodiscard]] VerificationOptions verification_options(const RecognizeOptions& options);
+
 using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 
-// Recognizes on valid input; throws nothing.
+// Recognizes on valid input; throws nothing. REQUIRES: check_method passes.
 [[nodiscard]] RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
                                           const RecognizeOptions& options, const Deadline& deadline = {});
 

@@ -31,7 +31,6 @@ Affine inverse_depth(const Vector3d& normal, double offset, const PinholeCamera&
   return {a / offset, b / offset, (normal.z() - a * camera.cx - b * camera.cy) / offset};
 }
 
-
 // Columns of a row at which all edge functions are >= 0: [first, last], empty when first > last.
 std::array<int, 2> inside(const std::array<Affine, 3>& edges, double row, int first_column, int last_column) {
   double low = first_column;
@@ -54,7 +53,8 @@ struct Corner {
   Vector2d image;  // column, row
 };
 
-void draw(const std::array<const Corner*, 3>& corners, int triangle, const PinholeCamera& camera, Rendering& rendering) {
+void draw(const std::array<const Corner*, 3>& corners, int triangle, const PinholeCamera& camera,
+          Rendering& rendering) {
   const Vector3d normal = (corners[1]->point - corners[0]->point).cross(corners[2]->point - corners[0]->point);
   const double offset = normal.dot(corners[0]->point);
   rendering.normal[static_cast<std::size_t>(triangle)] = normal.stableNormalized().cast<float>();

@@ -43,6 +43,7 @@ Json statistics_json(const Statistics& statistics) {
   json["hypotheses"] = statistics.hypotheses;
   json["verifications"] = statistics.verifications;
   json["energy_evaluations"] = statistics.energy_evaluations;
+  json["pose_checks"] = statistics.pose_checks;
   return json;
 }
 

@@ -1,0 +1,272 @@
+#include "compiler/acceptance_training.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "compiler/logistic_regression.h"
+#include "compiler/scene_generator.h"
+#include "runtime/highest_confidence_first.h"
+#include "runtime/pose_evidence.h"
+#include "runtime/recognize.h"
+#include "runtime/rendering.h"
+#include "runtime/scan_context.h"
+#include "runtime/two_way_search.h"
+
+namespace foresight {
+namespace {
+
+constexpr double kStretch = 1.2;         // of the impostors
+constexpr double kSameDistance = 5.0;    // of cells that show the same. Unit: mm.
+constexpr double kSameShare = 0.95;      // of the cells of poses that show the same
+constexpr double kLeastVisible = 0.3;    // an object hidden by more teaches nothing about right poses
+constexpr double kRidge = 0.1;           // keeps the weights finite where right and wrong lie apart
+constexpr double kOverlapReserve = 0.7;  // of the least overlap that came to a right pose
+
+using Features = std::array<double, kEvidenceFeatureCount>;
+
+// What one scene teaches.
+struct Lessons {
+  std::vector<Features> right;
+  std::vector<Features> wrong;
+  std::vector<double> overlaps;  // of hypotheses that came to a right pose
+};
+
+CadModel linearly_mapped(const CadModel& cad, const Eigen::Matrix3d& map) {
+  CadModel mapped = cad;
+  for (Eigen::Vector3d& vertex : mapped.vertices) vertex = map * vertex;
+  if (map.determinant() < 0.0) {
+    for (auto& triangle : mapped.triangles) std::swap(triangle[1], triangle[2]);
+  }
+  find_planar_faces(mapped, {});
+  return mapped;
+}
+
+// The object, then its impostors.
+std::vector<CadModel> cast_of(const CadModel& cad) {
+  std::vector<CadModel> cast = {cad};
+  cast.push_back(linearly_mapped(cad, Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal()));
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+    scale[axis] = axis == 1 ? 1.0 / kStretch : kStretch;
+    cast.push_back(linearly_mapped(cad, scale.asDiagonal()));
+  }
+  return cast;
+}
+
+// A third of the scenes each: the object alone; among two impostors; one impostor alone.
+Scene training_scene(const std::vector<CadModel>& cast, const SensorModel& sensor,
+                     const AcceptanceTrainingOptions& options, int index) {
+  Random random(~options.seed, static_cast<std::uint64_t>(index));
+  const int last = static_cast<int>(cast.size()) - 1;
+  const int first = random.integer(1, last);
+  const int second = 1 + first % last;
+  std::vector<int> chosen;
+  if (index % 3 == 0) chosen = {0};
+  if (index % 3 == 1) chosen = {0, first, second};
+  if (index % 3 == 2) chosen = {first};
+  std::vector<CadModel> models;
+  for (const int i : chosen) models.push_back(cast[static_cast<std::size_t>(i)]);
+  const int count = static_cast<int>(models.size());
+  Scene scene = generate_scene(models, sensor, {count, count, sensor.background}, options.seed,
+                               static_cast<std::uint64_t>(index));
+  for (SceneObject& object : scene.objects) object.model = chosen[static_cast<std::size_t>(object.model)];
+  return scene;
+}
+
+struct PosedModel {
+  const CompiledModel& model;
+  const Pose& T_sensor_model;
+};
+
+// Whether the sensor would see the same of both, each alone.
+bool looks_the_same(const PosedModel& a, const PosedModel& b, const PinholeCamera& camera) {
+  const Rendering at_a = render(a.model, a.T_sensor_model, camera);
+  const Rendering at_b = render(b.model, b.T_sensor_model, camera);
+  const auto depth_at_b = [&](int row, int column) {
+    row += at_a.first_row - at_b.first_row;
+    column += at_a.first_column - at_b.first_column;
+    if (row < 0 || row >= at_b.rows || column < 0 || column >= at_b.columns) return 0.0F;
+    return at_b.depth[static_cast<std::size_t>(at_b.cell(row, column))];
+  };
+  int shown_at_a = 0;
+  int same = 0;
+  for (int row = 0; row < at_a.rows; ++row) {
+    for (int column = 0; column < at_a.columns; ++column) {
+      const float depth = at_a.depth[static_cast<std::size_t>(at_a.cell(row, column))];
+      if (!(depth > 0.0F)) continue;
+      ++shown_at_a;
+      const float other = depth_at_b(row, column);
+      same += other > 0.0F && std::abs(static_cast<double>(other - depth)) <= kSameDistance ? 1 : 0;
+    }
+  }
+  const auto shown_at_b = std::count_if(at_b.depth.begin(), at_b.depth.end(), [](float z) { return z > 0.0F; });
+  const double either = shown_at_a + static_cast<double>(shown_at_b) - same;
+  return either > 0.0 && same >= kSameShare * either;
+}
+
+// The pose moved and turned about the object's centre.
+Pose displaced(const CompiledModel& model, const Pose& pose, double distance, double angle, Random& random) {
+  Pose moved;
+  moved.rotation = rotation_from_vector(angle * random.direction()) * pose.rotation;
+  moved.translation = pose * model.centre + distance * random.direction() - moved.rotation * model.centre;
+  return moved;
+}
+
+// As much of a compiled model as drawing it takes.
+CompiledModel drawable(const CadModel& cad) {
+  CompiledModel model;
+  for (const Eigen::Vector3d& vertex : cad.vertices) model.vertices.push_back(vertex.cast<float>());
+  model.triangles = cad.triangles;
+  return model;
+}
+
+class SceneTeacher {
+ public:
+  SceneTeacher(const Database& database, const std::vector<CadModel>& cast, const Scene& scene,
+               const std::vector<DescribedRegion>& regions, const HypothesisField& field)
+      : model_(database.models().front()),
+        context_{scene.scan.image,
+                 database.content().sensor.camera,
+                 database,
+                 regions,
+                 field,
+                 NearestDataPoint(scene.scan.image)},
+        labelled_(label_scan(scene.scan.image, context_.camera, database.content().sensor, regions)) {
+    for (const SceneObject& object : scene.objects) {
+      if (object.model == 0 && object.visible_fraction >= kLeastVisible) truth_ = object.T_sensor_model;
+      present_ = present_ || object.model == 0;
+      if (object.model > 0) {
+        impostors_.emplace_back(drawable(cast[static_cast<std::size_t>(object.model)]), object.T_sensor_model);
+      }
+    }
+  }
+
+  Lessons teach(const std::vector<ObjectHypothesis>& hypotheses, const AcceptanceTrainingOptions& options,
+                Random random) {
+    if (truth_) {
+      learn(displaced(model_, *truth_, 0.01 * model_.diameter, 0.03, random));  // comes home
+      learn(displaced(model_, *truth_, 0.1 * model_.diameter, 0.3, random));    // may be caught elsewhere
+      learn(displaced(model_, *truth_, 0.05 * model_.diameter, 3.0, random));   // turned round
+    }
+    std::vector<std::pair<double, Pose>> starts;  // by overlap
+    const std::size_t most = std::min(hypotheses.size(), static_cast<std::size_t>(options.most_hypotheses));
+    for (std::size_t i = 0; i < most; ++i) {
+      const std::optional<Pose> start = estimate_pose(context_, hypotheses[i]);
+      if (start) starts.emplace_back(overlap(*start), *start);
+    }
+    std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    // The best half, and of the rest some that overlap less: the least overlap of a right one is to be known.
+    for (int i = 0; i < options.most_refined && !starts.empty(); ++i) {
+      const std::size_t at = i % 2 == 0
+                                 ? static_cast<std::size_t>(i / 2)
+                                 : static_cast<std::size_t>(random.integer(0, static_cast<int>(starts.size()) - 1));
+      if (at >= starts.size()) break;
+      if (learn(starts[at].second)) lessons_.overlaps.push_back(starts[at].first);
+    }
+    return lessons_;
+  }
+
+ private:
+  double overlap(const Pose& start) const {
+    EvidenceOptions rough;
+    rough.distance = TwoWayOptions{}.start_distance;
+    const PoseEvidence evidence = gather_evidence(model_, start, labelled_, rough);
+    return static_cast<double>(evidence.explained) / std::max(1, evidence.drawn);
+  }
+
+  // Refines a start and takes down what its evidence looks like. Whether it came to a right pose.
+  bool learn(const Pose& start) {
+    const Pose pose = localize(model_, context_.sphere, start, context_.data, {}).T_sensor_model;
+    const PosedModel posed{model_, pose};
+    const bool right = truth_ && looks_the_same(posed, {model_, *truth_}, context_.camera);
+    // An object that is there but hardly visible, or an impostor that a symmetric object or this view cannot be told
+    // from: such poses are neither right nor wrong examples.
+    if (!right && present_ && !truth_) return false;
+    for (const auto& [impostor, at] : impostors_) {
+      if (!right && looks_the_same(posed, {impostor, at}, context_.camera)) return false;
+    }
+    const Features features = evidence_features(gather_evidence(model_, pose, labelled_));
+    (right ? lessons_.right : lessons_.wrong).push_back(features);
+    return right;
+  }
+
+  const CompiledModel& model_;
+  ScanContext context_;
+  LabelledScan labelled_;
+  std::optional<Pose> truth_;
+  bool present_ = false;
+  std::vector<std::pair<CompiledModel, Pose>> impostors_;
+  Lessons lessons_;
+};
+
+Lessons lessons_of_scene(const std::vector<CadModel>& cast, const Database& database,
+                         const AcceptanceTrainingOptions& options, int index) {
+  const CompiledDatabase& settings = database.content();
+  const Scene scene = training_scene(cast, settings.sensor, options, index);
+  const auto regions = extract_regions(scene.scan.image, settings.sensor.camera, settings.segmentation);
+  const BackgroundOptions background = background_for(settings.density);
+  const auto matches = match_likelihoods(regions, database, background);
+  const auto field = build_hypothesis_field(regions, matches, database, background, {});
+  const auto hypotheses = hypothesis_cliques(field, database, highest_confidence_first(field));
+  return SceneTeacher(database, cast, scene, regions, field)
+      .teach(hypotheses, options, Random(options.seed, static_cast<std::uint64_t>(index)));
+}
+
+// Both classes always have a voice: what any object's perfect and worthless evidence looks like.
+void add_ideals(Lessons& lessons) {
+  Features perfect{};
+  perfect[kOwnedShare] = perfect[kFoundFaces] = 1.0;
+  perfect[kLogExplained] = 0.8;  // 3000 cells
+  Features worthless{};
+  worthless[kContradictedShare] = 1.0;
+  lessons.right.push_back(perfect);
+  lessons.wrong.push_back(worthless);
+}
+
+}  // namespace
+
+AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compiled, const CompiledDatabase& settings,
+                                 const AcceptanceTrainingOptions& options) {
+  CompiledDatabase content = settings;
+  content.models = {compiled};
+  const Database database(std::move(content));
+  const std::vector<CadModel> cast = cast_of(cad);
+  std::vector<Lessons> of_scene(static_cast<std::size_t>(options.scenes));
+  tbb::parallel_for(0, options.scenes, [&](int i) {
+    of_scene[static_cast<std::size_t>(i)] = lessons_of_scene(cast, database, options, i);
+  });
+
+  Lessons all;
+  double least_overlap = 1.0;
+  for (const Lessons& lessons : of_scene) {
+    all.right.insert(all.right.end(), lessons.right.begin(), lessons.right.end());
+    all.wrong.insert(all.wrong.end(), lessons.wrong.begin(), lessons.wrong.end());
+    for (const double overlap : lessons.overlaps) least_overlap = std::min(least_overlap, overlap);
+  }
+  add_ideals(all);
+  const auto rights = static_cast<Eigen::Index>(all.right.size());
+  const auto samples = rights + static_cast<Eigen::Index>(all.wrong.size());
+  Eigen::MatrixXd features(samples, kEvidenceFeatureCount);
+  Eigen::VectorXd labels(samples);
+  for (Eigen::Index i = 0; i < samples; ++i) {
+    const bool right = i < rights;
+    const Features& row =
+        right ? all.right[static_cast<std::size_t>(i)] : all.wrong[static_cast<std::size_t>(i - rights)];
+    features.row(i) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), kEvidenceFeatureCount);
+    labels[i] = right ? 1.0 : 0.0;
+  }
+  const LogisticFit fit = fit_logistic(features, labels, kRidge);
+  AcceptanceModel model;
+  for (int k = 0; k < kEvidenceFeatureCount; ++k) model.weights[static_cast<std::size_t>(k)] = fit.weights[k];
+  model.bias = fit.bias;
+  // Without a single right pose to go by, nothing is given up early.
+  model.least_overlap = least_overlap < 1.0 ? kOverlapReserve * least_overlap : 0.0;
+  model.samples = static_cast<int>(samples);
+  return model;
+}
+
+}  // namespace foresight

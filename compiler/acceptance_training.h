@@ -1,0 +1,28 @@
+// Teaches two-way verification what right and wrong poses of an object look like, on simulated scans.
+#pragma once
+
+#include <cstdint>
+
+#include "common/compiled_model.h"
+#include "common/sensor_model.h"
+#include "compiler/cad_model.h"
+
+namespace foresight {
+
+struct AcceptanceTrainingOptions {
+  int scenes = 24;           // simulated. Limit: >= 8.
+  int most_hypotheses = 40;  // looked at in a scene, most likely first. Limit: >= 1.
+  int most_refined = 4;      // of them. Limit: >= 1.
+  std::uint64_t seed = 1;
+};
+
+// Scans, by the sensor's own model, of the object alone, among impostors, and of impostors without it. The impostors
+// are made of the object itself: mirrored, and stretched along each axis by a fifth. They are what an unknown object
+// that resembles it most would be. Right poses are those at which the sensor would see the same as at the true one (95
+// % of the cells within 5 mm); wrong ones are the best that the runtime's hypotheses come to, and displaced true ones.
+// compiled: the model without its acceptance. The runtime's own code gathers the evidence. Deterministic.
+[[nodiscard]] AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compiled,
+                                               const CompiledDatabase& settings,
+                                               const AcceptanceTrainingOptions& options);
+
+}  // namespace foresight
