@@ -22,12 +22,15 @@ struct Experiment {
 [[nodiscard]] Experiment add_clutter(CLI::App& app);       // Section VI.C.2, several objects
 [[nodiscard]] Experiment add_localization(CLI::App& app);  // Table I
 [[nodiscard]] Experiment add_real(CLI::App& app);          // real scans
+[[nodiscard]] Experiment add_potentials(CLI::App& app);    // Section IV.A, the choice of clique potentials
 [[nodiscard]] Experiment add_search(CLI::App& app);        // Section VI.C, against the interpretation tree
 
 // Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
 void add_common_options(CLI::App& command, ExperimentOptions& options, int n);
 void add_object_options(CLI::App& command,
                         ExperimentOptions& options);  // --cad, --unit, --sensor, --compile-sensor, --database
+// --cad, --sensor, and --models for database sizes
+void add_series_options(CLI::App& command, ExperimentOptions& options, std::vector<int>& models);
 void add_method_options(CLI::App& command, RecognizeOptions& method);  // --pruning, --prior-sign, --loss
 
 }  // namespace foresight

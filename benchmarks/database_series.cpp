@@ -7,6 +7,7 @@
 
 #include "benchmarks/random_solids.h"
 #include "common/atomic_file.h"
+#include "common/errors.h"
 #include "compiler/compile.h"
 #include "compiler/database_writer.h"
 #include "compiler/digest.h"
@@ -64,6 +65,16 @@ Database first_models(const ModelSeries& series, int count) {
   CompiledDatabase content = series.settings;
   content.models.assign(series.models.begin(), series.models.begin() + count);
   return Database(std::move(content));
+}
+
+void check_database_sizes(const std::vector<int>& sizes, int objects) {
+  for (const int size : sizes) {
+    if (size == 1 || size >= objects) continue;
+    throw UsageError(
+        "--models",
+        std::to_string(size) + " is neither 1 nor at least the " + std::to_string(objects) + " objects shown",
+        "give 1 for the object alone, or all objects and more");
+  }
 }
 
 Database only_model(const ModelSeries& series, int model) {

@@ -25,6 +25,10 @@ struct ModelSeries {
 // The first `count` models. REQUIRES: count <= models of the series.
 [[nodiscard]] Database first_models(const ModelSeries& series, int count);
 
+// Throws UsageError when a size asked for is neither 1 nor at least the number of objects shown: the true object must
+// be among the models.
+void check_database_sizes(const std::vector<int>& sizes, int objects);
+
 // One model alone.
 [[nodiscard]] Database only_model(const ModelSeries& series, int model);
 

@@ -7,7 +7,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   const std::vector<foresight::Experiment> experiments = {
       foresight::add_synthetic(app),    foresight::add_scanner(app), foresight::add_clutter(app),
-      foresight::add_localization(app), foresight::add_real(app),    foresight::add_search(app)};
+      foresight::add_localization(app), foresight::add_real(app),    foresight::add_potentials(app),
+      foresight::add_search(app)};
   return foresight::run_program("experiments", app, argc, argv, [&] {
     for (const foresight::Experiment& experiment : experiments) {
       if (experiment.command->parsed()) return experiment.run();

@@ -246,19 +246,9 @@ void write_plot(const SearchOptions& options, const std::vector<Row>& rows) {
   write_plots(options.common.output + "/search.svg", {tests, hypotheses}, 2);
 }
 
-void check(const SearchOptions& options, int objects) {
-  for (const int models : options.models) {
-    if (models == 1 || models >= objects) continue;
-    throw UsageError(
-        "--models",
-        std::to_string(models) + " is neither 1 nor at least the " + std::to_string(objects) + " objects shown",
-        "give 1 for the object alone, or all objects and more");
-  }
-}
-
 void run_search(SearchOptions& options) {
   const SensorModel sensor = sensor_of(options.common.sensor_file);
-  check(options, static_cast<int>(read_objects(options.common, sensor).size()));
+  check_database_sizes(options.models, static_cast<int>(read_objects(options.common, sensor).size()));
   const int most = *std::max_element(options.models.begin(), options.models.end());
   const ModelSeries series = compile_series(options.common, sensor, most);
   const std::vector<CadModel> objects(series.cads.begin(), series.cads.begin() + series.objects);
@@ -291,13 +281,7 @@ Experiment add_search(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("search", "Section VI.C: tests to the first right hypothesis, by search and database size");
   add_common_options(*command, options->common, 80);
-  command->add_option("--cad", options->common.cad_files,
-                      "CAD files, one object each; the eight of models/ when not given");
-  command->add_option("--sensor", options->common.sensor_file, "Sensor file; the paper's sensor when not given");
-  command->add_option("--models", options->models, "Models in the database; 1: the object shown alone")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
+  add_series_options(*command, options->common, options->models);
   command->add_option("--most-tests", options->most_tests, "Tests of one search in one scene")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
