@@ -8,7 +8,6 @@
 #include "benchmarks/random_solids.h"
 #include "common/atomic_file.h"
 #include "common/errors.h"
-#include "compiler/compile.h"
 #include "compiler/database_writer.h"
 #include "compiler/digest.h"
 
@@ -39,8 +38,8 @@ CompiledModel compiled_or_kept(const CadModel& cad, const CompiledDatabase& sett
 
 }  // namespace
 
-ModelSeries compile_series(const ExperimentOptions& options, const SensorModel& sensor, int count) {
-  const CompileOptions compile;
+ModelSeries compile_series(const ExperimentOptions& options, const SensorModel& sensor, int count,
+                           const CompileOptions& compile) {
   ModelSeries series;
   series.settings = new_database(sensor, compile);
   series.cads = read_objects(options, sensor);
