@@ -86,7 +86,7 @@ SearchResults run_searches(const SceneBench& bench, const Database& database, in
     result(random_search) = in_random_order(bench, tree, database, first_model);
   };
   run_tree(kLoose, Search::tree_loose, Search::tree_loose_random);
-  run_tree(kTwoSided, Search::tree_close, Search::tree_close_random);
+  run_tree(kTwoSided, Search::tree_two_sided, Search::tree_two_sided_random);
   return results;
 }
 
@@ -217,7 +217,8 @@ Table scene_rows(const SearchOptions& options, const std::vector<std::vector<Sea
 // Searches that share a list of hypotheses share its curve in the plot of numbers.
 bool has_own_list(std::size_t search) {
   const auto kind = static_cast<Search>(search);
-  return kind == Search::likely || kind == Search::unpruned || kind == Search::tree_loose || kind == Search::tree_close;
+  return kind == Search::likely || kind == Search::unpruned || kind == Search::tree_loose ||
+         kind == Search::tree_two_sided;
 }
 
 Curve curve_of(const std::vector<Row>& rows, std::size_t search, Mean Row::*what) {

@@ -6,42 +6,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/benchmarks/boxes.h"
 #include "tests/solids.h"
 
 namespace foresight {
 namespace {
 
-// A database of one box, as far as matching by CAD geometry looks at it.
-Database box_database(const CadModel& box) {
-  CompiledDatabase content;
-  CompiledModel model;
-  model.name = box.name;
-  for (const CadFace& face : box.faces) {
-    ModelFace compiled;
-    compiled.normal = face.normal;
-    compiled.views_found = 1;
-    for (Density& density : compiled.densities) density = {0.0, 1.0, 0, {1.0F}};
-    model.faces.push_back(compiled);
-  }
-  content.models.push_back(model);
-  return Database(content);
-}
-
-// A region that shows a rectangle in full: corners in the order round it, seen against `normal`.
-DescribedRegion rectangle(const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
-  DescribedRegion region;
-  region.region.normal = u.cross(v).normalized();
-  region.hull = {corner, corner + u, corner + u + v, corner + v};
-  region.attributes[kArea] = u.norm() * v.norm();
-  region.attributes[kMaxSecondMoment] = std::max(u.norm(), v.norm()) / std::sqrt(12.0);
-  region.attributes[kMinSecondMoment] = std::min(u.norm(), v.norm()) / std::sqrt(12.0);
-  region.attributes[kMaxDiameter] = std::hypot(u.norm(), v.norm());
-  return region;
-}
-
 // Top and right side of a box of 40 x 60 x 100 mm.
 std::vector<DescribedRegion> top_and_right() {
-  return {rectangle({0, 0, 100}, {40, 0, 0}, {0, 60, 0}), rectangle({40, 0, 0}, {0, 60, 0}, {0, 0, 100})};
+  return {test::rectangle({0, 0, 100}, {40, 0, 0}, {0, 60, 0}), test::rectangle({40, 0, 0}, {0, 60, 0}, {0, 0, 100})};
 }
 
 TEST(CadGeometry, of_a_box_has_the_closed_forms) {
@@ -59,7 +32,7 @@ TEST(CadGeometry, of_a_box_has_the_closed_forms) {
 
 TEST(CadField, matches_each_region_with_the_faces_of_its_size) {
   const CadModel box = test::make_box(40, 60, 100);
-  const Database database = box_database(box);
+  const Database database = test::database_of_copies(box, 1);
   const CadGeometry geometry = cad_geometry(box);
   const HypothesisField field = cad_field(top_and_right(), database, {&geometry}, {0.8, 1.1});
   ASSERT_EQ(field.matches.size(), 4U);  // bottom and top; left and right
@@ -70,7 +43,7 @@ TEST(CadField, matches_each_region_with_the_faces_of_its_size) {
 
 TEST(CadField, lets_a_region_be_part_of_a_larger_face_only_without_a_lower_bound) {
   const CadModel box = test::make_box(40, 60, 100);
-  const Database database = box_database(box);
+  const Database database = test::database_of_copies(box, 1);
   const CadGeometry geometry = cad_geometry(box);
   const HypothesisField loose = cad_field(top_and_right(), database, {&geometry}, {});
   const HypothesisField close = cad_field(top_and_right(), database, {&geometry}, {0.8, 1.1});
@@ -81,7 +54,7 @@ TEST(CadField, lets_a_region_be_part_of_a_larger_face_only_without_a_lower_bound
 
 TEST(CadField, supports_only_pairs_that_meet_at_the_angle_of_the_faces) {
   const CadModel box = test::make_box(40, 60, 100);
-  const Database database = box_database(box);
+  const Database database = test::database_of_copies(box, 1);
   const CadGeometry geometry = cad_geometry(box);
   std::vector<DescribedRegion> regions = top_and_right();
   const double lean = 20.0 * std::numbers::pi / 180.0;
