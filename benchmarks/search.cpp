@@ -235,16 +235,21 @@ Curve curve_of(const std::vector<Row>& rows, std::size_t search, Mean Row::*what
   return curve;
 }
 
+bool uses_sensor_model(std::size_t search) { return static_cast<Search>(search) <= Search::unpruned; }
+
 void write_plot(const SearchOptions& options, const std::vector<Row>& rows) {
-  Plot tests{
-      "Tests to the first right hypothesis", "models in the database", "tests, mean over scenes", true, true, {}, {}};
+  const auto tests = [](const std::string& title) {
+    return Plot{title, "models in the database", "tests, mean over scenes", true, true, {}, {}};
+  };
+  Plot sensor = tests("Tests to the first right hypothesis: with the sensor model");
+  Plot cad = tests("Tests to the first right hypothesis: CAD values alone");
   Plot hypotheses{"Hypotheses", "models in the database", "hypotheses a scene, mean", true, true, {}, {}};
   for (std::size_t s = 0; s < kSearches; ++s) {
-    tests.curves.push_back(curve_of(rows, s, &Row::to_right));
+    (uses_sensor_model(s) ? sensor : cad).curves.push_back(curve_of(rows, s, &Row::to_right));
     if (has_own_list(s)) hypotheses.curves.push_back(curve_of(rows, s, &Row::hypotheses));
   }
   hypotheses.curves.front().label = "HCF";
-  write_plots(options.common.output + "/search.svg", {tests, hypotheses}, 2);
+  write_plots(options.common.output + "/search.svg", {sensor, cad, hypotheses}, 2);
 }
 
 void run_search(SearchOptions& options) {
