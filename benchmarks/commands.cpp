@@ -30,7 +30,14 @@ void add_object_options(CLI::App& command, ExperimentOptions& options) {
                      "Database of these CAD files; compiled in this process when not given");
 }
 
-void add_method_options(CLI::App& command, RecognizeOptions& method) {
+void add_method_options(CLI::App& command, ExperimentOptions& options) {
+  RecognizeOptions& method = options.method;
+  std::string known;
+  for (const std::string& name : method_names()) known.append(known.empty() ? "" : ", ").append(name);
+  command.add_option("--methods", options.methods, "Whose rows the tables show, separated by commas: " + known)
+      ->delimiter(',')
+      ->check(CLI::IsMember(method_names()).description(""))
+      ->capture_default_str();
   static const std::map<std::string, PriorSign> signs = {{"minus-log", PriorSign::minus_log},
                                                          {"as-printed", PriorSign::plus_log_as_printed}};
   static const std::map<std::string, Pruning> prunings = {{"hcf", Pruning::highest_confidence_first},

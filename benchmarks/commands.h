@@ -17,16 +17,19 @@ struct Experiment {
   std::function<int()> run;  // the exit code; throws what common/errors.h lists
 };
 
-[[nodiscard]] Experiment add_synthetic(CLI::App& app);     // Section VI.C.1
-[[nodiscard]] Experiment add_scanner(CLI::App& app);       // Section VI.C.2
-[[nodiscard]] Experiment add_clutter(CLI::App& app);       // Section VI.C.2, several objects
-[[nodiscard]] Experiment add_localization(CLI::App& app);  // Table I
-[[nodiscard]] Experiment add_real(CLI::App& app);          // real scans
+[[nodiscard]] Experiment add_synthetic(CLI::App& app);       // Section VI.C.1
+[[nodiscard]] Experiment add_scanner(CLI::App& app);         // Section VI.C.2
+[[nodiscard]] Experiment add_clutter(CLI::App& app);         // Section VI.C.2, several objects
+[[nodiscard]] Experiment add_single_surface(CLI::App& app);  // Section VI.C.1, views of one face
+[[nodiscard]] Experiment add_twins(CLI::App& app);           // Section VI.C.1, castle and holed cube
+[[nodiscard]] Experiment add_unknown(CLI::App& app);         // no known object
+[[nodiscard]] Experiment add_localization(CLI::App& app);    // Table I
+[[nodiscard]] Experiment add_real(CLI::App& app);            // real scans
 
 // Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
 void add_common_options(CLI::App& command, ExperimentOptions& options, int n);
 void add_object_options(CLI::App& command,
                         ExperimentOptions& options);  // --cad, --unit, --sensor, --compile-sensor, --database
-void add_method_options(CLI::App& command, RecognizeOptions& method);  // --pruning, --prior-sign, --loss
+void add_method_options(CLI::App& command, ExperimentOptions& options);  // --methods, --pruning, --prior-sign, --loss
 
 }  // namespace foresight

@@ -3,9 +3,11 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
+#include "benchmarks/result_plots.h"
 #include "benchmarks/view_comparison.h"
 #include "common/atomic_file.h"
 #include "common/errors.h"
@@ -13,6 +15,9 @@
 #include "compiler/compile.h"
 #include "compiler/sensor_file.h"
 #include "runtime/recognize.h"
+#ifdef FORESIGHT_RIVALS
+#include "benchmarks/rivals/rivals.h"
+#endif
 
 namespace foresight {
 namespace {
@@ -105,19 +110,58 @@ std::vector<ScoredObject> scored_objects(const std::vector<CadModel>& models) {
   return objects;
 }
 
-SceneRecord recognize_and_score(const Bench& bench, const std::string& name, const RangeImage& image,
-                                std::vector<TrueObject> truth) {
-  const RecognitionResult result = recognize(image, bench.sensor.camera, bench.database, bench.method);
+std::vector<std::string> method_names() {
+  std::vector<std::string> names = {"paper"};
+#ifdef FORESIGHT_RIVALS
+  for (const std::string& name : rival_names()) names.push_back(name);
+#endif
+  return names;
+}
+
+std::vector<Contestant> contestants(const ExperimentOptions& options, const std::vector<CadModel>& models,
+                                    const SensorModel& sensor, const Database& database) {
+  std::vector<Contestant> result;
+  for (const std::string& name : options.methods) {
+    if (name == "paper") {
+      const RecognizeOptions method = options.method;
+      result.push_back({name, [&database, method](const RangeImage& image, const PinholeCamera& camera) {
+                          return recognize(image, camera, database, method);
+                        }});
+      continue;
+    }
+#ifdef FORESIGHT_RIVALS
+    const std::vector<std::string> rivals = rival_names();
+    if (std::find(rivals.begin(), rivals.end(), name) != rivals.end()) {
+      result.push_back(make_rival(name, models, sensor));
+      continue;
+    }
+#else
+    (void)models;
+    (void)sensor;
+#endif
+    std::string known;
+    for (const std::string& other : method_names()) known.append(known.empty() ? "" : ", ").append(other);
+    throw UsageError("--methods", "there is no method " + name + " in this build, only " + known,
+                     "name those; rivals are built in with -DFORESIGHT_RIVALS=ON");
+  }
+  return result;
+}
+
+SceneRecord recognize_and_score(const Bench& bench, const Contestant& contestant, const TrueScan& scan) {
+  const RecognitionResult result = contestant.recognize(scan.image, scan.camera);
+  SensorModel sensor = bench.sensor;
+  sensor.camera = scan.camera;
   SceneRecord record;
-  record.name = name;
-  record.truth = std::move(truth);
+  record.method = contestant.name;
+  record.name = scan.name;
+  record.truth = scan.truth;
   for (const Detection& detection : result.detections) {
     record.reported.push_back({object_named(bench.models, detection.object), pose_of(detection)});
     record.ranks.push_back(detection.rank);
   }
   record.verdicts = score_scene(
       bench.objects, record.truth, record.reported, [&](int object, const Pose& reported, const Pose& pose) {
-        return indistinguishable(bench.models[static_cast<std::size_t>(object)], bench.sensor, reported, pose);
+        return indistinguishable(bench.models[static_cast<std::size_t>(object)], sensor, reported, pose);
       });
   record.statistics = result.statistics;
   record.milliseconds = result.milliseconds;
@@ -141,6 +185,7 @@ void write_results(const ExperimentOptions& options, const std::string& name, co
   for (const CadModel& model : models) names.push_back(model.name);
   write_csv(options, name, summary_table(rows, options.seed));
   write_csv(options, name + "_scenes", scene_table(scenes, names));
+  write_plots(options.output + "/" + name + ".svg", {right_pose_plot(name, rows)});
   std::cout << name << ", seed " << options.seed << "\n" << to_text(short_table(rows));
   if (options.jobs > 1)
     std::cout << "times: of " << options.jobs << " scans at once; use --jobs 1 for times that mean something\n";

@@ -23,8 +23,9 @@ struct ExperimentOptions {
   std::string output = "results";      // folder
   std::string progress = "auto";
   std::uint64_t seed = 1;
-  int n = 0;     // scenes. Limit: >= 1.
-  int jobs = 1;  // threads. Limit: >= 1.
+  std::vector<std::string> methods = {"paper"};  // each a set of rows; see method_names()
+  int n = 0;                                     // scenes. Limit: >= 1.
+  int jobs = 1;                                  // threads. Limit: >= 1.
   RecognizeOptions method;
 };
 
@@ -48,21 +49,40 @@ void run_in_parallel(const ExperimentOptions& options, const std::string& title,
 // The objects to score, in the models' order.
 [[nodiscard]] std::vector<ScoredObject> scored_objects(const std::vector<CadModel>& models);
 
-// What one experiment recognizes with and scores against.
+// Something that recognizes objects in one scan: a method of this project, or a rival's chain in the same table.
+struct Contestant {
+  std::string name;  // of its rows
+  std::function<RecognitionResult(const RangeImage&, const PinholeCamera&)> recognize;
+};
+
+// What options.methods may name: "paper", and the rivals where they are built in (FORESIGHT_RIVALS).
+[[nodiscard]] std::vector<std::string> method_names();
+
+// The contestants of the options, in their order. The database must outlive them. Throws UsageError for a name that is
+// not one of method_names().
+[[nodiscard]] std::vector<Contestant> contestants(const ExperimentOptions& options, const std::vector<CadModel>& models,
+                                                  const SensorModel& sensor, const Database& database);
+
+// What a result is scored against.
 struct Bench {
   const std::vector<CadModel>& models;
   const std::vector<ScoredObject>& objects;
-  const Database& database;
-  const SensorModel& sensor;  // of the scan
-  const RecognizeOptions& method;
+  const SensorModel& sensor;  // of the scans, but for the camera, which is the scan's own
 };
 
-// Recognizes one scan and scores the result. The truth's objects index bench.models.
-[[nodiscard]] SceneRecord recognize_and_score(const Bench& bench, const std::string& name, const RangeImage& image,
-                                              std::vector<TrueObject> truth);
+// One scan with what it shows; the truth's objects index Bench::models.
+struct TrueScan {
+  std::string name;
+  RangeImage image;
+  PinholeCamera camera;
+  std::vector<TrueObject> truth;
+};
 
-// Writes NAME.csv (summary) and NAME_scenes.csv into the output folder and prints the short table with what it holds
-// for.
+// Recognizes one scan and scores the result.
+[[nodiscard]] SceneRecord recognize_and_score(const Bench& bench, const Contestant& contestant, const TrueScan& scan);
+
+// Writes NAME.csv (summary), NAME_scenes.csv and NAME.svg (right poses by set, a curve a method) into the output folder
+// and prints the short table with what it holds for. The scenes of all methods.
 void write_results(const ExperimentOptions& options, const std::string& name, const std::vector<SummaryRow>& rows,
                    const std::vector<SceneRecord>& scenes, const std::vector<CadModel>& models);
 

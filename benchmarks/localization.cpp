@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "benchmarks/intervals.h"
 #include "benchmarks/overlay.h"
 #include "benchmarks/perturbed_pose.h"
+#include "benchmarks/plot.h"
 #include "benchmarks/series.h"
 #include "common/errors.h"
 #include "runtime/verification.h"
@@ -53,6 +55,7 @@ Target find_target(const std::vector<CadModel>& models, const SensorModel& senso
 }
 
 struct Trial {
+  double start_error = 0.0;  // MSSD of the start. Unit: mm.
   bool accepted = false;
   bool right = false;
   int energy_evaluations = 0;
@@ -81,7 +84,8 @@ Trial run_trial(const LocalizationBench& bench, Loss loss, Perturbation kind, st
                                            bench.target.scene.scan.image, bench.camera, bench.data, {});
   const bool right =
       mssd(bench.scored, found.T_sensor_model, bench.target.object.T_sensor_model) <= bench.scored.tolerance();
-  return {verification.accepted, right, found.energy_evaluations, taken.count()};
+  const double start_error = mssd(bench.scored, start, bench.target.object.T_sensor_model);
+  return {start_error, verification.accepted, right, found.energy_evaluations, taken.count()};
 }
 
 Table empty_table() {
@@ -138,8 +142,47 @@ void write_target_picture(const ExperimentOptions& options, const std::vector<Ca
   write_picture(options.output + "/localization_" + model.name + ".png", picture);
 }
 
-void run_target(const ExperimentOptions& options, const LocalizationBench& bench, const std::string& name,
-                Table& table) {
+// All trials with each error distribution.
+using TrialsByLoss = std::array<std::vector<Trial>, kLosses.size()>;
+
+// Right poses and cost against the error of the start, over all targets and both kinds of starts.
+void write_convergence_plot(const ExperimentOptions& options, const TrialsByLoss& trials) {
+  constexpr double kBinWidth = 8.0;   // Unit: mm.
+  constexpr std::size_t kFewest = 5;  // trials that make a point
+  Plot right{"Convergence of localization", "largest surface distance of the start, mm", "right pose, %"};
+  Plot cost{"Cost of localization", right.x_label, "energy evaluations"};
+  for (std::size_t l = 0; l < kLosses.size(); ++l) {
+    std::map<int, std::vector<const Trial*>> bins;
+    for (const Trial& trial : trials[l]) bins[static_cast<int>(trial.start_error / kBinWidth)].push_back(&trial);
+    Curve curve;
+    curve.label = kLossNames[l];
+    curve.style = Curve::Style::line_and_points;
+    Curve evaluations = curve;
+    for (const auto& [bin, members] : bins) {
+      if (members.size() < kFewest) continue;
+      long hits = 0;
+      double sum = 0.0;
+      for (const Trial* trial : members) {
+        hits += trial->right ? 1 : 0;
+        sum += trial->energy_evaluations;
+      }
+      const auto count = static_cast<long>(members.size());
+      const Interval interval = wilson_interval(hits, count);
+      curve.x.push_back(kBinWidth * (bin + 0.5));
+      curve.y.push_back(100.0 * static_cast<double>(hits) / static_cast<double>(count));
+      curve.low.push_back(100.0 * interval.low);
+      curve.high.push_back(100.0 * interval.high);
+      evaluations.x.push_back(curve.x.back());
+      evaluations.y.push_back(sum / static_cast<double>(count));
+    }
+    right.curves.push_back(std::move(curve));
+    cost.curves.push_back(std::move(evaluations));
+  }
+  write_plots(options.output + "/localization.svg", {right, cost}, 2);
+}
+
+void run_target(const ExperimentOptions& options, const LocalizationBench& bench, const std::string& name, Table& table,
+                TrialsByLoss& all_trials) {
   for (std::size_t s = 0; s < kStarts.size(); ++s) {
     for (std::size_t l = 0; l < kLosses.size(); ++l) {
       std::vector<Trial> trials(static_cast<std::size_t>(options.n));
@@ -149,6 +192,7 @@ void run_target(const ExperimentOptions& options, const LocalizationBench& bench
       std::vector<std::string> row = {name, kStartNames[s], kLossNames[l]};
       for (std::string& cell : table_row(trials)) row.push_back(std::move(cell));
       table.rows.push_back(std::move(row));
+      all_trials[l].insert(all_trials[l].end(), trials.begin(), trials.end());
     }
   }
 }
@@ -162,6 +206,7 @@ void run_localization(const ExperimentOptions& options) {
       options, models, options.compile_sensor_file.empty() ? sensor : sensor_of(options.compile_sensor_file));
   const ViewingSphere sphere(kAspectCells);
   Table table = empty_table();
+  TrialsByLoss trials;
   for (const char* name : kTargets) {
     const Target target = find_target(models, sensor, name, options.seed);
     const NearestDataPoint data(target.scene.scan.image);
@@ -170,10 +215,11 @@ void run_localization(const ExperimentOptions& options) {
         std::find_if(compiled.begin(), compiled.end(), [&](const CompiledModel& model) { return model.name == name; });
     if (found == compiled.end())
       throw InputError(options.database_file, "it holds no object named " + std::string(name), "add it");
-    run_target(options, {*found, objects[target.model], target, sensor.camera, data, sphere}, name, table);
+    run_target(options, {*found, objects[target.model], target, sensor.camera, data, sphere}, name, table, trials);
     std::cout << name << ": scene " << target.index << ", " << target.scene.objects.size() << " objects, "
               << decimal(100.0 * target.object.visible_fraction, 1) << " % visible\n";
     write_csv(options, "localization", table);
+    write_convergence_plot(options, trials);
     write_target_picture(options, models, target, sensor.camera);
   }
   std::cout << "localization, seed " << options.seed << "\n" << to_text(table);

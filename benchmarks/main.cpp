@@ -5,9 +5,11 @@
 int main(int argc, char** argv) {
   CLI::App app("Runs the experiments of the paper and of this project; results as CSV.", "experiments");
   app.require_subcommand(1);
-  const std::vector<foresight::Experiment> experiments = {foresight::add_synthetic(app), foresight::add_scanner(app),
-                                                          foresight::add_clutter(app), foresight::add_localization(app),
-                                                          foresight::add_real(app)};
+  const std::vector<foresight::Experiment> experiments = {
+      foresight::add_synthetic(app),      foresight::add_scanner(app),
+      foresight::add_clutter(app),        foresight::add_localization(app),
+      foresight::add_single_surface(app), foresight::add_twins(app),
+      foresight::add_unknown(app),        foresight::add_real(app)};
   return foresight::run_program("experiments", app, argc, argv, [&] {
     for (const foresight::Experiment& experiment : experiments) {
       if (experiment.command->parsed()) return experiment.run();

@@ -72,6 +72,13 @@ std::string drawing(const std::string& block, const Curve& curve, std::size_t in
   return text;
 }
 
+// Whether there is a point to draw at all: gnuplot refuses a plot of nothing.
+bool is_empty(const Plot& plot) {
+  return std::all_of(plot.curves.begin(), plot.curves.end(), [](const Curve& curve) {
+    return std::none_of(curve.y.begin(), curve.y.end(), [](double y) { return std::isfinite(y); });
+  });
+}
+
 std::string plot_commands(const Plot& plot, std::size_t index) {
   std::string text;
   std::string drawings;
@@ -96,7 +103,7 @@ std::string plot_commands(const Plot& plot, std::size_t index) {
       text.append(i > 0 ? ", " : "").append(quoted(plot.x_names[i])).append(" ").append(std::to_string(i));
     text += ")\nset xrange [-0.6:" + decimal(static_cast<double>(plot.x_names.size()) - 0.4, 1) + "]\n";
   }
-  return text + drawings + "\n";
+  return text + (is_empty(plot) ? std::string("plot [0:1][0:1] NaN title 'no data'") : drawings) + "\n";
 }
 
 std::string script_for(const std::string& file, const std::vector<Plot>& plots, int columns) {

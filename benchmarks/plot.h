@@ -23,8 +23,8 @@ struct Plot {
   std::string y_label;
   bool logarithmic_x = false;  // REQUIRES: every x > 0
   bool logarithmic_y = false;
-  std::vector<std::string> x_names;  // where not empty, names of x = 0, 1, 2, ... in place of numbers
-  std::vector<Curve> curves;
+  std::vector<std::string> x_names{};  // where not empty, names of x = 0, 1, 2, ... in place of numbers
+  std::vector<Curve> curves{};
 };
 
 // Several plots side by side in one picture, `columns` in a row. Throws InputError naming the file when it cannot be

@@ -8,6 +8,7 @@
 
 #include "benchmarks/commands.h"
 #include "benchmarks/scene_picture.h"
+#include "benchmarks/series.h"
 #include "benchmarks/truth_file.h"
 #include "common/errors.h"
 #include "common/scan_file.h"
@@ -44,31 +45,29 @@ std::vector<TrueObject> truth_of(const ScanTruth& scan, const std::vector<CadMod
 
 void run_real(ExperimentOptions options, const std::string& folder) {
   if (options.cad_files.empty()) options.cad_files = cad_files_in(folder + "/models");
-  const SensorModel sensor =
-      sensor_of(options.sensor_file.empty() ? project_path("models/sensors/abw.textproto") : options.sensor_file);
-  const std::vector<CadModel> models = read_objects(options, sensor);
-  const std::vector<ScoredObject> objects = scored_objects(models);
+  const SeriesSetup setup = set_up_series(options, project_path("models/sensors/abw.textproto"));
   const std::string truth_file = folder + "/truth.json";
   const std::vector<ScanTruth> scans = read_truth_file(truth_file);
-  const Database database = database_of(
-      options, models, options.compile_sensor_file.empty() ? sensor : sensor_of(options.compile_sensor_file));
   write_csv(options, "real", {});  // makes the folder, and tells now whether it can be written
 
-  std::vector<SceneRecord> records(scans.size());
-  run_in_parallel(options, "real", static_cast<int>(scans.size()), [&](int i) {
+  const auto draw = [&](int i) {
     const ScanTruth& truth = scans[static_cast<std::size_t>(i)];
-    const Scan scan =
+    Scan scan =
         read_scan(folder + "/scans/" + truth.scan + ".png", {folder + "/camera_" + truth.camera + ".json", 1.0});
-    SensorModel used = sensor;
-    used.camera = *scan.camera;
-    records[static_cast<std::size_t>(i)] = recognize_and_score(
-        {models, objects, database, used, options.method}, truth.scan, scan.image, truth_of(truth, models, truth_file));
-    const SceneRecord& record = records[static_cast<std::size_t>(i)];
-    write_picture(options.output + "/" + truth.scan + ".png",
-                  draw_scene(scan.image, used.camera, models, record.truth, record.reported));
-  });
-  std::vector<SummaryRow> rows = {summarize("visible >= 50 %", records, {0.5, 2.0}), summarize("all", records)};
-  write_results(options, "real", rows, records, models);
+    return TrueScan{truth.scan, std::move(scan.image), *scan.camera, truth_of(truth, setup.models, truth_file)};
+  };
+  const auto records = recognize_series(options, "real", setup, static_cast<int>(scans.size()), draw);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const TrueScan scan = draw(static_cast<int>(i));
+    for (const auto& of_method : records) {
+      write_picture(options.output + "/" + of_method[i].method + "_" + scan.name + ".png",
+                    draw_scene(scan.image, scan.camera, setup.models, scan.truth, of_method[i].reported));
+    }
+  }
+  const auto by_visibility = [](const std::vector<SceneRecord>& of_method) {
+    return std::vector{summarize("visible >= 50 %", of_method, {0.5, 2.0}), summarize("all", of_method)};
+  };
+  write_results(options, "real", rows_of_all(records, by_visibility), joined(records), setup.models);
 }
 
 }  // namespace
@@ -82,7 +81,7 @@ Experiment add_real(CLI::App& app) {
   command->add_option("--data", *folder,
                       "Data folder that holds abw/; FORESIGHT_DATA, or ../shared/data beside the checkout");
   add_object_options(*command, *options);
-  add_method_options(*command, options->method);
+  add_method_options(*command, *options);
   return {command, [options, folder] {
             if (!std::filesystem::exists(*folder + "/abw/truth.json")) {
               std::cout << "real: skipped, there is no " << *folder

@@ -14,14 +14,9 @@ Experiment add_scanner(CLI::App& app) {
       "scanner", "Section VI.C.2, simulated: noise, shadow, varied distance, table (paper: 77.5 % of 80 real images)");
   add_common_options(*command, *options, 160);
   add_object_options(*command, *options);
-  add_method_options(*command, options->method);
+  add_method_options(*command, *options);
   return {command, [options] {
-            const std::string scan_file =
-                options->sensor_file.empty() ? project_path("models/sensors/scanner.textproto") : options->sensor_file;
-            const SensorModel sensor = sensor_of(scan_file);
-            const std::string compile_file = options->compile_sensor_file;
-            run_single_object_series(*options, "scanner", sensor,
-                                     compile_file.empty() ? sensor : sensor_of(compile_file));
+            run_single_object_series(*options, "scanner", project_path("models/sensors/scanner.textproto"));
             return static_cast<int>(kExitDone);
           }};
 }

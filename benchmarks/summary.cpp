@@ -74,7 +74,7 @@ void add_share(std::vector<std::string>& row, long hits, long trials) {
 }
 
 std::vector<std::string> summary_cells(const SummaryRow& row, std::uint64_t seed) {
-  std::vector<std::string> cells = {row.label, std::to_string(row.scenes), std::to_string(row.objects),
+  std::vector<std::string> cells = {row.method, row.label, std::to_string(row.scenes), std::to_string(row.objects),
                                     std::to_string(seed)};
   add_share(cells, row.named, row.objects);
   add_share(cells, row.right, row.objects);
@@ -118,6 +118,7 @@ bool SceneRecord::failed() const {
 
 SummaryRow summarize(const std::string& label, const std::vector<SceneRecord>& scenes, const VisibleRange& visible) {
   SummaryRow row;
+  row.method = scenes.empty() ? std::string() : scenes.front().method;
   row.label = label;
   row.scenes = static_cast<long>(scenes.size());
   Mean rank;
@@ -143,9 +144,22 @@ SummaryRow summarize(const std::string& label, const std::vector<SceneRecord>& s
   return row;
 }
 
+Table share_table(const std::vector<CountedShare>& shares, std::uint64_t seed) {
+  Table table;
+  table.header = {"method", "set", "n", "seed", "hits", "percent", "low", "high"};
+  for (const CountedShare& share : shares) {
+    std::vector<std::string> row = {share.method, share.label, std::to_string(share.trials), std::to_string(seed),
+                                    std::to_string(share.hits)};
+    add_share(row, share.hits, share.trials);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 Table summary_table(const std::vector<SummaryRow>& rows, std::uint64_t seed) {
   Table table;
-  table.header = {"set",
+  table.header = {"method",
+                  "set",
                   "scenes",
                   "objects",
                   "seed",
@@ -184,11 +198,11 @@ Table summary_table(const std::vector<SummaryRow>& rows, std::uint64_t seed) {
 
 Table short_table(const std::vector<SummaryRow>& rows) {
   Table table;
-  table.header = {"set",        "n",          "object %", "right %",    "95 %",       "+indist %", "false pos",
-                  "wrong pose", "hypotheses", "verif.",   "when found", "energy ev.", "total ms"};
+  table.header = {"method",    "set",        "n",          "object %", "right %",    "95 %",       "+indist %",
+                  "false pos", "wrong pose", "hypotheses", "verif.",   "when found", "energy ev.", "total ms"};
   for (const SummaryRow& row : rows) {
     const Interval interval = wilson_interval(row.right, row.objects);
-    table.rows.push_back({row.label, std::to_string(row.objects), percent(row.named, row.objects),
+    table.rows.push_back({row.method, row.label, std::to_string(row.objects), percent(row.named, row.objects),
                           percent(row.right, row.objects),
                           decimal(100.0 * interval.low, 0) + "-" + decimal(100.0 * interval.high, 0),
                           percent(row.right + row.indistinguishable, row.objects), std::to_string(row.false_positives),
@@ -201,17 +215,17 @@ Table short_table(const std::vector<SummaryRow>& rows) {
 
 Table scene_table(const std::vector<SceneRecord>& scenes, const std::vector<std::string>& object_names) {
   Table table;
-  table.header = {"scene", "kind", "object", "verdict", "visible_fraction", "rank"};
+  table.header = {"method", "scene", "kind", "object", "verdict", "visible_fraction", "rank"};
   const auto name = [&](int object) {
     return object < 0 ? std::string("unknown") : object_names[static_cast<std::size_t>(object)];
   };
   for (const SceneRecord& scene : scenes) {
     for (std::size_t t = 0; t < scene.truth.size(); ++t) {
-      table.rows.push_back({scene.name, "truth", name(scene.truth[t].object), verdict_name(scene.verdicts.truth[t]),
-                            decimal(scene.truth[t].visible_fraction, 3), ""});
+      table.rows.push_back({scene.method, scene.name, "truth", name(scene.truth[t].object),
+                            verdict_name(scene.verdicts.truth[t]), decimal(scene.truth[t].visible_fraction, 3), ""});
     }
     for (std::size_t r = 0; r < scene.reported.size(); ++r) {
-      table.rows.push_back({scene.name, "report", name(scene.reported[r].object),
+      table.rows.push_back({scene.method, scene.name, "report", name(scene.reported[r].object),
                             verdict_name(scene.verdicts.reported[r]), "", std::to_string(scene.ranks[r])});
     }
   }

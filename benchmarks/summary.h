@@ -12,6 +12,7 @@ namespace foresight {
 
 // One scan, recognized and scored.
 struct SceneRecord {
+  std::string method;  // of the contestant
   std::string name;
   std::vector<TrueObject> truth;
   std::vector<ReportedObject> reported;
@@ -25,6 +26,7 @@ struct SceneRecord {
 };
 
 struct SummaryRow {
+  std::string method;  // of the scenes, empty over none
   std::string label;
   long scenes = 0;
   long objects = 0;            // true objects counted
@@ -56,6 +58,16 @@ struct VisibleRange {
 };
 [[nodiscard]] SummaryRow summarize(const std::string& label, const std::vector<SceneRecord>& scenes,
                                    const VisibleRange& visible = {});
+
+// A share that a table shows with its interval: scenes with a false report, for instance.
+struct CountedShare {
+  std::string method;
+  std::string label;
+  long hits = 0;
+  long trials = 0;
+};
+// One row a share: method, set, n, seed, hits, percent, 95 % interval.
+[[nodiscard]] Table share_table(const std::vector<CountedShare>& shares, std::uint64_t seed);
 
 // All columns, with 95 % intervals, n and the seed; times last, because they alone differ between runs.
 [[nodiscard]] Table summary_table(const std::vector<SummaryRow>& rows, std::uint64_t seed);

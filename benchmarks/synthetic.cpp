@@ -14,12 +14,9 @@ Experiment add_synthetic(CLI::App& app) {
       app.add_subcommand("synthetic", "Section VI.C.1: single objects, no background (paper: 92.5 % of 160)");
   add_common_options(*command, *options, 160);
   add_object_options(*command, *options);
-  add_method_options(*command, options->method);
+  add_method_options(*command, *options);
   return {command, [options] {
-            const SensorModel sensor = sensor_of(options->sensor_file);
-            const std::string compile_file = options->compile_sensor_file;
-            run_single_object_series(*options, "synthetic", sensor,
-                                     compile_file.empty() ? sensor : sensor_of(compile_file));
+            run_single_object_series(*options, "synthetic", "");
             return static_cast<int>(kExitDone);
           }};
 }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "benchmarks/rivals/contestant.h"
+#include "benchmarks/experiment.h"
 #include "common/sensor_model.h"
 #include "compiler/cad_model.h"
 

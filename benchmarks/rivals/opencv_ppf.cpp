@@ -14,18 +14,18 @@ namespace {
 namespace ppf = cv::ppf_match_3d;
 
 struct OpencvPpfOptions {
-  double spacing = 0.06;          // of model and scene points, of the diameter. Limit: > 0.
-  double distance_step = 0.06;    // of the distance bins, of the diameter. Limit: > 0.
+  double spacing = 0.1;           // of model and scene points, of the diameter. Limit: > 0.
+  double distance_step = 0.1;     // of the distance bins, of the diameter. Limit: > 0.
   double angle_bins = 30;         // in a full turn. Limit: >= 4.
-  double references = 0.5;        // share of the scene's points that are reference points. Limit: (0, 1].
+  double references = 0.2;        // share of the scene's points that are reference points. Limit: (0, 1].
   double cluster_distance = 0.1;  // poses within this are one, of the diameter. Limit: > 0.
   double cluster_angle = 0.2;     // and whose angles of rotation are within this. Unit: rad. Limit: > 0.
-  std::size_t most_poses = 8;     // that go to ICP, an object. Limit: >= 1.
-  double refine_spacing = 3.0;    // of the points that ICP gets. Unit: mm. Limit: > 0.
-  int iterations = 100;           // of ICP. Limit: >= 1.
+  std::size_t most_poses = 6;     // that go to ICP, an object. Limit: >= 1.
+  double refine_spacing = 6.0;    // of the points that ICP gets. Unit: mm. Limit: > 0.
+  int iterations = 30;            // of ICP. Limit: >= 1.
   double tolerance = 0.005;       // of ICP. Limit: > 0.
   double rejection = 2.5;         // of ICP, in robust standard deviations. Limit: > 0.
-  int levels = 4;                 // of ICP. Limit: >= 1.
+  int levels = 3;                 // of ICP. Limit: >= 1.
 };
 
 constexpr std::uint64_t kSeed = 1;

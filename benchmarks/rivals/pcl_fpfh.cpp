@@ -21,7 +21,7 @@ using Features = pcl::PointCloud<pcl::FPFHSignature33>;
 struct PclFpfhOptions {
   double spacing = 4.0;          // of model and scene points. Unit: mm. Limit: > 0.
   double feature_radius = 20.0;  // neighbours in a histogram. Unit: mm. Limit: > spacing.
-  double window = 0.6;           // radius of the windows of the scene, of the diameter. Limit: > 0.
+  double window = 0.8;           // radius of the windows of the scene, of the diameter. Limit: > 0.
   int iterations = 4000;         // of RANSAC, a window. Limit: >= 1.
   int samples = 3;               // correspondences a pose. Limit: >= 3.
   int neighbours = 5;            // features that a correspondence is drawn from. Limit: >= 1.

@@ -16,13 +16,13 @@ namespace foresight {
 namespace {
 
 struct PclPpfOptions {
-  double spacing = 0.06;          // of model and scene points and the distance bins, of the diameter. Limit: > 0.
+  double spacing = 0.1;           // of model and scene points and the distance bins, of the diameter. Limit: > 0.
   int angle_bins = 30;            // at least this many in a full turn: 12 degrees, PCL's default. Limit: >= 4.
-  double window = 0.6;            // radius of the windows of the scene, of the diameter. Limit: > 0.
-  int references = 2;             // every so many points of a window are reference points. Limit: >= 1.
+  double window = 0.8;            // radius of the windows of the scene, of the diameter. Limit: > 0.
+  int references = 4;             // every so many points of a window are reference points. Limit: >= 1.
   double cluster_distance = 0.1;  // poses within this are one, of the diameter. Limit: > 0.
   double cluster_angle = 0.26;    // and this. Unit: rad. Limit: > 0.
-  double refine_spacing = 4.0;    // of the model points that ICP gets. Unit: mm. Limit: > 0.
+  double refine_spacing = 6.0;    // of the model points that ICP gets. Unit: mm. Limit: > 0.
 };
 
 constexpr std::uint64_t kSeed = 1;

@@ -8,10 +8,10 @@
 namespace foresight {
 
 struct PclRefinementOptions {
-  double spacing = 2.0;        // of the scene's points. Unit: mm. Limit: > 0.
+  double spacing = 3.0;        // of the scene's points. Unit: mm. Limit: > 0.
   double far_distance = 10.0;  // correspondences in the first round, and
   double near_distance = 4.0;  // in the second are no farther. Unit: mm. Limit: > 0.
-  int iterations = 20;         // a round. Limit: >= 1.
+  int iterations = 12;         // a round. Limit: >= 1.
 };
 
 class PclRefinement {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "benchmarks/rivals/contestant.h"
+#include "benchmarks/experiment.h"
 #include "benchmarks/rivals/rival_scene.h"
 #include "benchmarks/rivals/rival_verification.h"
 

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/rivals/contestant.h"
+#include "benchmarks/experiment.h"
 #include "common/sensor_model.h"
 #include "compiler/cad_model.h"
 

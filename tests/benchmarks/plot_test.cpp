@@ -50,6 +50,15 @@ TEST(Plot, names_stand_at_their_bars) {
   EXPECT_NE(read_text(file).find("castle"), std::string::npos);
 }
 
+TEST(Plot, of_nothing_says_so) {
+  const TemporaryFolder folder;
+  Plot plot = small_plot();
+  plot.curves.front().y.assign(3, std::numeric_limits<double>::quiet_NaN());
+  const std::string file = folder.path() + "/empty.svg";
+  write_plots(file, {plot});
+  EXPECT_NE(read_text(file).find("no data"), std::string::npos);
+}
+
 TEST(Plot, same_data_give_the_same_bytes) {
   const TemporaryFolder folder;
   write_plots(folder.path() + "/a.svg", {small_plot()});

@@ -1,0 +1,44 @@
+// Regression gates: recognition on fixed scenes must not fall below what it once was. The lower end of the 95 %
+// interval is held against the gate, not the mean, so that a gate that fails means something.
+#include <gtest/gtest.h>
+
+#include "benchmarks/intervals.h"
+#include "benchmarks/series.h"
+#include "tests/support.h"
+
+namespace foresight {
+namespace {
+
+constexpr int kScenes = 80;
+
+ExperimentOptions gate_options(const test::TemporaryFolder& folder) {
+  ExperimentOptions options;
+  options.output = folder.path();
+  options.progress = "none";
+  options.seed = 5;  // an exploration seed: tables are reported on others
+  options.n = kScenes;
+  options.jobs = 2;
+  options.method.most_verifications = 20;
+  return options;
+}
+
+TEST(RecognitionGates, single_objects_before_nothing) {
+  const test::TemporaryFolder folder;
+  const SummaryRow row = run_single_object_series(gate_options(folder), "synthetic", "").front();
+  ASSERT_EQ(row.objects, kScenes);
+  EXPECT_GE(wilson_interval(row.right, row.objects).low, 0.78) << row.right << " of " << row.objects << " right";
+  EXPECT_LE(wilson_interval(row.false_positives, row.scenes).low, 0.10) << row.false_positives << " false positives";
+  EXPECT_LE(row.hypotheses, 1200.0);
+}
+
+TEST(RecognitionGates, single_objects_on_a_table_with_noise_and_shadow) {
+  const test::TemporaryFolder folder;
+  ExperimentOptions options = gate_options(folder);
+  options.n = 40;
+  const SummaryRow row =
+      run_single_object_series(options, "scanner", test::project_file("models/sensors/scanner.textproto")).front();
+  EXPECT_GE(wilson_interval(row.right, row.objects).low, 0.72) << row.right << " of " << row.objects << " right";
+}
+
+}  // namespace
+}  // namespace foresight
