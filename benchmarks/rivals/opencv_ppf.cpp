@@ -20,7 +20,7 @@ struct OpencvPpfOptions {
   double references = 0.2;        // share of the scene's points that are reference points. Limit: (0, 1].
   double cluster_distance = 0.1;  // poses within this are one, of the diameter. Limit: > 0.
   double cluster_angle = 0.2;     // and whose angles of rotation are within this. Unit: rad. Limit: > 0.
-  std::size_t most_poses = 6;     // that go to ICP, an object. Limit: >= 1.
+  std::size_t most_poses = 8;     // that go to ICP, an object. Limit: >= 1.
   double refine_spacing = 6.0;    // of the points that ICP gets. Unit: mm. Limit: > 0.
   int iterations = 30;            // of ICP. Limit: >= 1.
   double tolerance = 0.005;       // of ICP. Limit: > 0.
@@ -30,6 +30,7 @@ struct OpencvPpfOptions {
 
 constexpr std::uint64_t kSeed = 1;
 constexpr std::size_t kFewestPoints = 10;
+constexpr double kSmallestSide = 0.01;  // of the bounding box of a scene. Unit: mm.
 
 struct OpencvObject {
   double diameter = 0.0;
@@ -85,6 +86,8 @@ std::vector<Pose> propose(OpencvObject& object, const OrientedPoints& scene, con
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }
+  // OpenCV divides by each side of the box, and runs out of bounds when one is 0.
+  if (static_cast<double>((high - low).minCoeff()) < kSmallestSide) return {};
   const double share = std::min(0.2, 0.5 * spacing / static_cast<double>((high - low).maxCoeff()));
   std::vector<ppf::Pose3DPtr> found;
   {

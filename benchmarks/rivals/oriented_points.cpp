@@ -34,6 +34,12 @@ void OrientedPoints::add(const Eigen::Vector3f& point, const Eigen::Vector3f& no
   normals.push_back(normal);
 }
 
+OrientedPoints OrientedPoints::at(const std::vector<std::size_t>& indices) const {
+  OrientedPoints chosen;
+  for (const std::size_t i : indices) chosen.add(points[i], normals[i]);
+  return chosen;
+}
+
 OrientedPoints thin_out(const OrientedPoints& points, double side) {
   std::map<Cube, std::vector<std::size_t>> cubes;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -15,6 +15,7 @@ struct OrientedPoints {
   std::vector<Eigen::Vector3f> normals;  // unit; as many
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
+  [[nodiscard]] OrientedPoints at(const std::vector<std::size_t>& indices) const;
   void add(const Eigen::Vector3f& point, const Eigen::Vector3f& normal);
 };
 

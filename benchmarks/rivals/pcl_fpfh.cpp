@@ -19,15 +19,15 @@ using Cloud = pcl::PointCloud<pcl::PointNormal>;
 using Features = pcl::PointCloud<pcl::FPFHSignature33>;
 
 struct PclFpfhOptions {
-  double spacing = 4.0;          // of model and scene points. Unit: mm. Limit: > 0.
-  double feature_radius = 20.0;  // neighbours in a histogram. Unit: mm. Limit: > spacing.
+  double spacing = 6.0;          // of model and scene points. Unit: mm. Limit: > 0.
+  double feature_radius = 25.0;  // neighbours in a histogram. Unit: mm. Limit: > spacing.
   double window = 0.8;           // radius of the windows of the scene, of the diameter. Limit: > 0.
-  int iterations = 4000;         // of RANSAC, a window. Limit: >= 1.
+  int iterations = 10000;        // of RANSAC, a window. Limit: >= 1.
   int samples = 3;               // correspondences a pose. Limit: >= 3.
-  int neighbours = 5;            // features that a correspondence is drawn from. Limit: >= 1.
-  double similarity = 0.9;       // of the edge lengths of the polygons. Limit: [0, 1).
+  int neighbours = 3;            // features that a correspondence is drawn from. Limit: >= 1.
+  double similarity = 0.85;      // of the edge lengths of the polygons. Limit: [0, 1).
   double inlier_distance = 5.0;  // Unit: mm. Limit: > 0.
-  double inlier_share = 0.2;     // of the model's points, most of which no scan shows. Limit: [0, 1].
+  double inlier_share = 0.15;    // of the model's points, most of which no scan shows. Limit: [0, 1].
 };
 
 constexpr std::uint64_t kSeed = 1;
@@ -60,17 +60,23 @@ FpfhObject train(const CadModel& cad, const PclFpfhOptions& options) {
   return object;
 }
 
-// A window of the scene with the features that its points have in the whole scene.
-struct FpfhWindow {
-  Cloud::Ptr cloud;
+// Points of the scene with their features: all of them, or a window.
+struct FpfhScene {
+  OrientedPoints points;
   Features::Ptr features;
 };
 
-std::vector<Pose> ransac(const FpfhObject& object, const FpfhWindow& window, const PclFpfhOptions& options) {
+FpfhScene part_of(const FpfhScene& scene, const std::vector<std::size_t>& window) {
+  FpfhScene part{scene.points.at(window), std::make_shared<Features>()};
+  for (const std::size_t i : window) part.features->push_back((*scene.features)[i]);
+  return part;
+}
+
+std::vector<Pose> ransac(const FpfhObject& object, const FpfhScene& window, const PclFpfhOptions& options) {
   pcl::SampleConsensusPrerejective<pcl::PointNormal, pcl::PointNormal, pcl::FPFHSignature33> registration;
   registration.setInputSource(object.model);
   registration.setSourceFeatures(object.features);
-  registration.setInputTarget(window.cloud);
+  registration.setInputTarget(to_pcl(window.points));
   registration.setTargetFeatures(window.features);
   registration.setMaximumIterations(options.iterations);
   registration.setNumberOfSamples(options.samples);
@@ -88,13 +94,18 @@ std::vector<Pose> ransac(const FpfhObject& object, const FpfhWindow& window, con
   return {to_pose(registration.getFinalTransformation())};
 }
 
-std::vector<FpfhWindow> feature_windows(const OrientedPoints& scene, double radius, const PclFpfhOptions& options) {
-  std::vector<FpfhWindow> found;
-  for (const OrientedPoints& window : windows(scene, radius, kFewestPoints)) {
-    const Cloud::Ptr cloud = to_pcl(window);
-    found.push_back({cloud, features_of(cloud, options.feature_radius)});
+FpfhScene scene_features(const OrientedPoints& points, const PclFpfhOptions& options) {
+  FpfhScene scene{thin_out(points, options.spacing), nullptr};
+  scene.features = features_of(to_pcl(scene.points), options.feature_radius);
+  return scene;
+}
+
+std::vector<Pose> propose(const FpfhObject& object, const FpfhScene& scene, const PclFpfhOptions& options) {
+  std::vector<Pose> poses;
+  for (const auto& window : windows(scene.points, options.window * object.diameter, kFewestPoints)) {
+    for (const Pose& pose : ransac(object, part_of(scene, window), options)) poses.push_back(pose);
   }
-  return found;
+  return poses;
 }
 
 }  // namespace
@@ -106,17 +117,10 @@ Contestant make_pcl_fpfh(const std::vector<CadModel>& models, const SensorModel&
   for (const CadModel& model : models) objects->push_back(train(model, options));
   return rival_chain("pcl-fpfh", models, sensor, [objects, options](const RivalScene& scene) {
     const auto refinement = std::make_shared<PclRefinement>(scene.points);
-    const auto thinned = std::make_shared<OrientedPoints>(thin_out(scene.points, options.spacing));
+    const auto features = std::make_shared<FpfhScene>(scene_features(scene.points, options));
     const auto object_at = [objects](int i) -> const FpfhObject& { return (*objects)[static_cast<std::size_t>(i)]; };
     return RivalStages{
-        [=](int object) {
-          std::vector<Pose> poses;
-          const double radius = options.window * object_at(object).diameter;
-          for (const FpfhWindow& window : feature_windows(*thinned, radius, options)) {
-            for (const Pose& pose : ransac(object_at(object), window, options)) poses.push_back(pose);
-          }
-          return poses;
-        },
+        [=](int object) { return propose(object_at(object), *features, options); },
         [=](int object, const Pose& start) { return refinement->refine(object_at(object).points, start); }};
   });
 }

@@ -15,12 +15,15 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Normals = pcl::PointCloud<pcl::Normal>;
 using Labels = pcl::PointCloud<pcl::Label>;
 
+// PCL lets its tolerances grow with the square of the depth, or with 1 + depth, and means metres.
+constexpr float kMetresPerMillimetre = 0.001F;
+
 Cloud::Ptr to_cloud(const RangeImage& image) {
   auto cloud =
       std::make_shared<Cloud>(static_cast<std::uint32_t>(image.columns), static_cast<std::uint32_t>(image.rows));
   cloud->is_dense = false;
   for (int cell = 0; cell < image.size(); ++cell) {
-    (*cloud)[static_cast<std::size_t>(cell)].getVector3fMap() = image[cell];
+    (*cloud)[static_cast<std::size_t>(cell)].getVector3fMap() = kMetresPerMillimetre * image[cell];
   }
   return cloud;
 }
@@ -46,7 +49,7 @@ std::vector<int> pcl_planes(const RangeImage& image, const PclPlanesOptions& opt
   segmentation.setInputNormals(normals_of(cloud, options));
   segmentation.setMinInliers(static_cast<unsigned>(options.smallest_region));
   segmentation.setAngularThreshold(options.angle);
-  segmentation.setDistanceThreshold(options.distance);
+  segmentation.setDistanceThreshold(options.distance * static_cast<double>(kMetresPerMillimetre));
   segmentation.setMaximumCurvature(options.largest_curvature);
 
   std::vector<pcl::ModelCoefficients> planes;

@@ -16,10 +16,10 @@ namespace foresight {
 namespace {
 
 struct PclPpfOptions {
-  double spacing = 0.1;           // of model and scene points and the distance bins, of the diameter. Limit: > 0.
+  double spacing = 0.12;          // of model and scene points and the distance bins, of the diameter. Limit: > 0.
   int angle_bins = 30;            // at least this many in a full turn: 12 degrees, PCL's default. Limit: >= 4.
   double window = 0.8;            // radius of the windows of the scene, of the diameter. Limit: > 0.
-  int references = 4;             // every so many points of a window are reference points. Limit: >= 1.
+  int references = 5;             // every so many points of a window are reference points. Limit: >= 1.
   double cluster_distance = 0.1;  // poses within this are one, of the diameter. Limit: > 0.
   double cluster_angle = 0.26;    // and this. Unit: rad. Limit: > 0.
   double refine_spacing = 6.0;    // of the model points that ICP gets. Unit: mm. Limit: > 0.
@@ -82,8 +82,8 @@ Pose vote(const PpfObject& object, const OrientedPoints& window, const PclPpfOpt
 std::vector<Pose> propose(const PpfObject& object, const OrientedPoints& scene, const PclPpfOptions& options) {
   const OrientedPoints thinned = thin_out(scene, object.spacing);
   std::vector<Pose> poses;
-  for (const OrientedPoints& window : windows(thinned, options.window * object.diameter, kFewestPoints)) {
-    poses.push_back(vote(object, window, options));
+  for (const auto& window : windows(thinned, options.window * object.diameter, kFewestPoints)) {
+    poses.push_back(vote(object, thinned.at(window), options));
   }
   return poses;
 }

@@ -11,7 +11,7 @@
 namespace foresight {
 namespace {
 
-constexpr double kCentreDistance = 0.7;  // of two windows, in radii
+constexpr double kCentreDistance = 0.9;  // of two windows, in radii
 constexpr int kFewestForNormal = 6;      // cells
 
 // Of the cells that are not background, from such cells alone.
@@ -116,17 +116,17 @@ RivalScene prepare_scene(const RangeImage& image, const PinholeCamera& camera, c
   return scene;
 }
 
-std::vector<OrientedPoints> windows(const OrientedPoints& points, double radius, std::size_t fewest) {
-  std::vector<OrientedPoints> balls;
+std::vector<std::vector<std::size_t>> windows(const OrientedPoints& points, double radius, std::size_t fewest) {
+  std::vector<std::vector<std::size_t>> balls;
   if (points.size() == 0) return balls;
   std::vector<double> distance(points.size(), std::numeric_limits<double>::max());
   std::size_t centre = 0;
   while (distance[centre] > kCentreDistance * radius) {
-    OrientedPoints ball;
+    std::vector<std::size_t> ball;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double to_centre = static_cast<double>((points.points[i] - points.points[centre]).norm());
       distance[i] = std::min(distance[i], to_centre);
-      if (to_centre <= radius) ball.add(points.points[i], points.normals[i]);
+      if (to_centre <= radius) ball.push_back(i);
     }
     if (ball.size() >= fewest) balls.push_back(std::move(ball));
     centre = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());

@@ -33,8 +33,9 @@ struct RivalScene {
 [[nodiscard]] RivalScene prepare_scene(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
                                        const RivalSceneOptions& options = {});
 
-// Overlapping balls of this radius that cover the points: centres among the points, none within 0.7 radius of another,
-// each the point farthest from those before. Balls with fewer than `fewest` points are left out.
-[[nodiscard]] std::vector<OrientedPoints> windows(const OrientedPoints& points, double radius, std::size_t fewest);
+// Overlapping balls of this radius that cover the points: centres among the points, none within 0.9 radius of another,
+// each the point farthest from those before. Balls with fewer than `fewest` points are left out. Indices of points.
+[[nodiscard]] std::vector<std::vector<std::size_t>> windows(const OrientedPoints& points, double radius,
+                                                            std::size_t fewest);
 
 }  // namespace foresight
