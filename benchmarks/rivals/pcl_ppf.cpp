@@ -16,7 +16,7 @@ namespace foresight {
 namespace {
 
 struct PclPpfOptions {
-  double spacing = 0.12;          // of model and scene points and the distance bins, of the diameter. Limit: > 0.
+  double spacing = 0.1;           // of model and scene points and the distance bins, of the diameter. Limit: > 0.
   int angle_bins = 30;            // at least this many in a full turn: 12 degrees, PCL's default. Limit: >= 4.
   double window = 0.8;            // radius of the windows of the scene, of the diameter. Limit: > 0.
   int references = 5;             // every so many points of a window are reference points. Limit: >= 1.
