@@ -30,6 +30,18 @@ void add_object_options(CLI::App& command, ExperimentOptions& options) {
                      "Database of these CAD files; compiled in this process when not given");
 }
 
+void add_series_options(CLI::App& command, ExperimentOptions& options, std::vector<int>& models) {
+  command.add_option("--cad", options.cad_files, "CAD files, one object each; the eight of models/ when not given");
+  command.add_option("--unit", options.unit, "Unit of the CAD files")
+      ->check(CLI::IsMember({"mm", "cm", "m", "in"}))
+      ->capture_default_str();
+  command.add_option("--sensor", options.sensor_file, "Sensor file; the paper's sensor when not given");
+  command.add_option("--models", models, "Models in the database: the objects, then random solids; 1: the object alone")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+}
+
 void add_method_options(CLI::App& command, ExperimentOptions& options) {
   RecognizeOptions& method = options.method;
   std::string known;

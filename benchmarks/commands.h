@@ -28,11 +28,14 @@ struct Experiment {
 [[nodiscard]] Experiment add_search(CLI::App& app);          // Section VI.C, against the interpretation tree
 [[nodiscard]] Experiment add_segmentation(CLI::App& app);    // extraction alone, real scans
 [[nodiscard]] Experiment add_constraints(CLI::App& app);     // Sections III and VI.A
+[[nodiscard]] Experiment add_potentials(CLI::App& app);      // Section IV
 
 // Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
 void add_common_options(CLI::App& command, ExperimentOptions& options, int n);
 void add_object_options(CLI::App& command,
                         ExperimentOptions& options);  // --cad, --unit, --sensor, --compile-sensor, --database
 void add_method_options(CLI::App& command, ExperimentOptions& options);  // --methods, --pruning, --prior-sign, --loss
+// --cad, --sensor, and --models for database sizes
+void add_series_options(CLI::App& command, ExperimentOptions& options, std::vector<int>& models);
 
 }  // namespace foresight

@@ -7,7 +7,7 @@
 
 #include "benchmarks/random_solids.h"
 #include "common/atomic_file.h"
-#include "compiler/compile.h"
+#include "common/errors.h"
 #include "compiler/database_writer.h"
 #include "compiler/digest.h"
 
@@ -38,8 +38,8 @@ CompiledModel compiled_or_kept(const CadModel& cad, const CompiledDatabase& sett
 
 }  // namespace
 
-ModelSeries compile_series(const ExperimentOptions& options, const SensorModel& sensor, int count) {
-  const CompileOptions compile;
+ModelSeries compile_series(const ExperimentOptions& options, const SensorModel& sensor, int count,
+                           const CompileOptions& compile) {
   ModelSeries series;
   series.settings = new_database(sensor, compile);
   series.cads = read_objects(options, sensor);
@@ -64,6 +64,16 @@ Database first_models(const ModelSeries& series, int count) {
   CompiledDatabase content = series.settings;
   content.models.assign(series.models.begin(), series.models.begin() + count);
   return Database(std::move(content));
+}
+
+void check_database_sizes(const std::vector<int>& sizes, int objects) {
+  for (const int size : sizes) {
+    if (size == 1 || size >= objects) continue;
+    throw UsageError(
+        "--models",
+        std::to_string(size) + " is neither 1 nor at least the " + std::to_string(objects) + " objects shown",
+        "give 1 for the object alone, or all objects and more");
+  }
 }
 
 Database only_model(const ModelSeries& series, int model) {

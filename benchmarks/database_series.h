@@ -5,6 +5,7 @@
 
 #include "benchmarks/experiment.h"
 #include "common/compiled_model.h"
+#include "compiler/compile.h"
 
 namespace foresight {
 
@@ -20,10 +21,15 @@ struct ModelSeries {
 // in the folder OUTPUT/databases, in a file named after its geometry, the sensor and all settings; a file that is there
 // is read instead. It is not named after the compiler's code: remove the folder when that has changed.
 // Throws what read_cad_model, load_database and write_file_atomically throw.
-[[nodiscard]] ModelSeries compile_series(const ExperimentOptions& options, const SensorModel& sensor, int count);
+[[nodiscard]] ModelSeries compile_series(const ExperimentOptions& options, const SensorModel& sensor, int count,
+                                         const CompileOptions& compile = {});
 
 // The first `count` models. REQUIRES: count <= models of the series.
 [[nodiscard]] Database first_models(const ModelSeries& series, int count);
+
+// Throws UsageError when a size asked for is neither 1 nor at least the number of objects shown: the true object must
+// be among the models.
+void check_database_sizes(const std::vector<int>& sizes, int objects);
 
 // One model alone.
 [[nodiscard]] Database only_model(const ModelSeries& series, int model);

@@ -20,8 +20,8 @@ enum class Search {
   unpruned,           // all cliques of N+, least energy first
   tree_loose,         // constrained interpretation tree, CAD values as upper bounds, depth first by region size
   tree_loose_random,  // its hypotheses in random order
-  tree_close,         // the same two with CAD values as bounds on both sides
-  tree_close_random,
+  tree_two_sided,     // the same two with CAD values as bounds on both sides
+  tree_two_sided_random,
 };
 inline constexpr std::array<const char*, 8> kSearchNames = {
     "most likely first", "random order",        "largest regions first", "no HCF",

@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
                                                           foresight::add_real(app),            //
                                                           foresight::add_search(app),          //
                                                           foresight::add_segmentation(app),    //
-                                                          foresight::add_constraints(app)};
+                                                          foresight::add_constraints(app),     //
+                                                          foresight::add_potentials(app)};
   return foresight::run_program("experiments", app, argc, argv, [&] {
     for (const foresight::Experiment& experiment : experiments) {
       if (experiment.command->parsed()) return experiment.run();

@@ -202,7 +202,7 @@ CadModel random_solid(std::uint64_t seed, int index) {
   assert(index >= 0);
   Random random(seed, static_cast<std::uint64_t>(index));
   const bool stairs = random.integer(0, 1) == 1;
-  while (true) {  // about one try in three is taken
+  while (true) {
     std::optional<CadModel> model = stairs ? staircase(random) : frustum(random);
     if (!model) continue;
     const double diameter = model->diameter();

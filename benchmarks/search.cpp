@@ -86,7 +86,7 @@ SearchResults run_searches(const SceneBench& bench, const Database& database, in
     result(random_search) = in_random_order(bench, tree, database, first_model);
   };
   run_tree(kLoose, Search::tree_loose, Search::tree_loose_random);
-  run_tree(kTwoSided, Search::tree_close, Search::tree_close_random);
+  run_tree(kTwoSided, Search::tree_two_sided, Search::tree_two_sided_random);
   return results;
 }
 
@@ -217,7 +217,8 @@ Table scene_rows(const SearchOptions& options, const std::vector<std::vector<Sea
 // Searches that share a list of hypotheses share its curve in the plot of numbers.
 bool has_own_list(std::size_t search) {
   const auto kind = static_cast<Search>(search);
-  return kind == Search::likely || kind == Search::unpruned || kind == Search::tree_loose || kind == Search::tree_close;
+  return kind == Search::likely || kind == Search::unpruned || kind == Search::tree_loose ||
+         kind == Search::tree_two_sided;
 }
 
 Curve curve_of(const std::vector<Row>& rows, std::size_t search, Mean Row::*what) {
@@ -234,31 +235,26 @@ Curve curve_of(const std::vector<Row>& rows, std::size_t search, Mean Row::*what
   return curve;
 }
 
+bool uses_sensor_model(std::size_t search) { return static_cast<Search>(search) <= Search::unpruned; }
+
 void write_plot(const SearchOptions& options, const std::vector<Row>& rows) {
-  Plot tests{
-      "Tests to the first right hypothesis", "models in the database", "tests, mean over scenes", true, true, {}, {}};
+  const auto tests = [](const std::string& title) {
+    return Plot{title, "models in the database", "tests, mean over scenes", true, true, {}, {}};
+  };
+  Plot sensor = tests("Tests to the first right hypothesis: with the sensor model");
+  Plot cad = tests("Tests to the first right hypothesis: CAD values alone");
   Plot hypotheses{"Hypotheses", "models in the database", "hypotheses a scene, mean", true, true, {}, {}};
   for (std::size_t s = 0; s < kSearches; ++s) {
-    tests.curves.push_back(curve_of(rows, s, &Row::to_right));
+    (uses_sensor_model(s) ? sensor : cad).curves.push_back(curve_of(rows, s, &Row::to_right));
     if (has_own_list(s)) hypotheses.curves.push_back(curve_of(rows, s, &Row::hypotheses));
   }
   hypotheses.curves.front().label = "HCF";
-  write_plots(options.common.output + "/search.svg", {tests, hypotheses}, 2);
-}
-
-void check(const SearchOptions& options, int objects) {
-  for (const int models : options.models) {
-    if (models == 1 || models >= objects) continue;
-    throw UsageError(
-        "--models",
-        std::to_string(models) + " is neither 1 nor at least the " + std::to_string(objects) + " objects shown",
-        "give 1 for the object alone, or all objects and more");
-  }
+  write_plots(options.common.output + "/search.svg", {sensor, cad, hypotheses}, 2);
 }
 
 void run_search(SearchOptions& options) {
   const SensorModel sensor = sensor_of(options.common.sensor_file);
-  check(options, static_cast<int>(read_objects(options.common, sensor).size()));
+  check_database_sizes(options.models, static_cast<int>(read_objects(options.common, sensor).size()));
   const int most = *std::max_element(options.models.begin(), options.models.end());
   const ModelSeries series = compile_series(options.common, sensor, most);
   const std::vector<CadModel> objects(series.cads.begin(), series.cads.begin() + series.objects);
@@ -291,13 +287,7 @@ Experiment add_search(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("search", "Section VI.C: tests to the first right hypothesis, by search and database size");
   add_common_options(*command, options->common, 80);
-  command->add_option("--cad", options->common.cad_files,
-                      "CAD files, one object each; the eight of models/ when not given");
-  command->add_option("--sensor", options->common.sensor_file, "Sensor file; the paper's sensor when not given");
-  command->add_option("--models", options->models, "Models in the database; 1: the object shown alone")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
+  add_series_options(*command, options->common, options->models);
   command->add_option("--most-tests", options->most_tests, "Tests of one search in one scene")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
