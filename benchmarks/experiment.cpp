@@ -162,6 +162,7 @@ SceneRecord recognize_and_score(const Bench& bench, const Contestant& contestant
   for (const Detection& detection : result.detections) {
     record.reported.push_back({object_named(bench.models, detection.object), pose_of(detection)});
     record.ranks.push_back(detection.rank);
+    record.scores.push_back(detection.score);
   }
   record.verdicts = score_scene(
       bench.objects, record.truth, record.reported, [&](int object, const Pose& reported, const Pose& pose) {
@@ -189,6 +190,7 @@ void write_results(const ExperimentOptions& options, const std::string& name, co
   for (const CadModel& model : models) names.push_back(model.name);
   write_csv(options, name, summary_table(rows, options.seed));
   write_csv(options, name + "_scenes", scene_table(scenes, names));
+  write_csv(options, name + "_calibration", calibration_table(scenes));
   write_plots(options.output + "/" + name + ".svg", {right_pose_plot(name, rows)});
   std::cout << name << ", seed " << options.seed << "\n" << to_text(short_table(rows));
   if (options.jobs > 1)

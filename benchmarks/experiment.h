@@ -24,8 +24,8 @@ struct ExperimentOptions {
   std::string progress = "auto";
   std::uint64_t seed = 1;
   std::vector<std::string> methods = {"two-way", "paper"};  // each a set of rows; see method_names()
-  int n = 0;                                     // scenes. Limit: >= 1.
-  int jobs = 1;                                  // threads. Limit: >= 1.
+  int n = 0;                                                // scenes. Limit: >= 1.
+  int jobs = 1;                                             // threads. Limit: >= 1.
   RecognizeOptions method;
 };
 
@@ -55,7 +55,8 @@ struct Contestant {
   std::function<RecognitionResult(const RangeImage&, const PinholeCamera&)> recognize;
 };
 
-// What options.methods may name: "two-way" (the default method), "paper", and the rivals where they are built in (FORESIGHT_RIVALS).
+// What options.methods may name: "two-way" (the default method), "paper", and the rivals where they are built in
+// (FORESIGHT_RIVALS).
 [[nodiscard]] std::vector<std::string> method_names();
 
 // The contestants of the options, in their order. The database must outlive them. Throws UsageError for a name that is
@@ -81,8 +82,8 @@ struct TrueScan {
 // Recognizes one scan and scores the result.
 [[nodiscard]] SceneRecord recognize_and_score(const Bench& bench, const Contestant& contestant, const TrueScan& scan);
 
-// Writes NAME.csv (summary), NAME_scenes.csv and NAME.svg (right poses by set, a curve a method) into the output folder
-// and prints the short table with what it holds for. The scenes of all methods.
+// Writes NAME.csv (summary), NAME_scenes.csv, NAME_calibration.csv and NAME.svg (right poses by set, a curve a method)
+// into the output folder and prints the short table with what it holds for. The scenes of all methods.
 void write_results(const ExperimentOptions& options, const std::string& name, const std::vector<SummaryRow>& rows,
                    const std::vector<SceneRecord>& scenes, const std::vector<CadModel>& models);
 

@@ -16,6 +16,7 @@
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
 #include "runtime/match_likelihoods.h"
+#include "runtime/recognize.h"
 
 namespace foresight {
 namespace {
@@ -212,12 +213,16 @@ void write_plot(const PotentialsOptions& options, const std::vector<Row>& rows) 
 bool recognized(const PotentialsOptions& options, const Setting& setting, const ModelSeries& series,
                 const std::vector<CadModel>& objects, const Database& database, const Scene& scene) {
   RecognizeOptions method;
+  method.method = Method::paper;  // whose potentials they are
   method.potentials = setting.potentials;
   method.pruning = setting.pruning;
   method.most_verifications = options.budget;
-  const SceneRecord record =
-      recognize_and_score({objects, scored_objects(objects), database, series.settings.sensor, method}, "",
-                          scene.scan.image, truth_of(scene));
+  const Contestant contestant{setting.name, [&](const RangeImage& image, const PinholeCamera& camera) {
+                                return recognize(image, camera, database, method);
+                              }};
+  const SensorModel& sensor = series.settings.sensor;
+  const SceneRecord record = recognize_and_score({objects, scored_objects(objects), sensor}, contestant,
+                                                 {"", scene.scan.image, sensor.camera, truth_of(scene)});
   return record.verdicts.truth.front() == Verdict::right;
 }
 

@@ -1,7 +1,9 @@
 #include "benchmarks/summary.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
 
 #include "benchmarks/intervals.h"
 
@@ -213,20 +215,55 @@ Table short_table(const std::vector<SummaryRow>& rows) {
   return table;
 }
 
+Table calibration_table(const std::vector<SceneRecord>& scenes) {
+  constexpr std::array<double, 6> kEdges = {0.0, 0.5, 0.7, 0.9, 0.97, 1.0};
+  struct Bin {
+    long reports = 0;
+    long right = 0;
+    double sum = 0.0;
+  };
+  std::map<std::string, std::array<Bin, kEdges.size() - 1>> of_method;
+  for (const SceneRecord& scene : scenes) {
+    for (std::size_t r = 0; r < scene.reported.size(); ++r) {
+      const auto above = std::upper_bound(kEdges.begin() + 1, kEdges.end() - 1, scene.scores[r]);
+      Bin& bin = of_method[scene.method][static_cast<std::size_t>(above - kEdges.begin()) - 1];
+      const Verdict verdict = scene.verdicts.reported[r];
+      ++bin.reports;
+      bin.right += verdict == Verdict::right || verdict == Verdict::indistinguishable ? 1 : 0;
+      bin.sum += scene.scores[r];
+    }
+  }
+  Table table;
+  table.header = {"method", "score_from", "score_to", "reports", "mean_score", "right_percent", "low", "high"};
+  for (const auto& [method, bins] : of_method) {
+    for (std::size_t b = 0; b < bins.size(); ++b) {
+      if (bins[b].reports == 0) continue;
+      std::vector<std::string> row = {method, decimal(kEdges[b], 2), decimal(kEdges[b + 1], 2),
+                                      std::to_string(bins[b].reports),
+                                      decimal(bins[b].sum / static_cast<double>(bins[b].reports), 3)};
+      add_share(row, bins[b].right, bins[b].reports);
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
 Table scene_table(const std::vector<SceneRecord>& scenes, const std::vector<std::string>& object_names) {
   Table table;
-  table.header = {"method", "scene", "kind", "object", "verdict", "visible_fraction", "rank"};
+  table.header = {"method", "scene", "kind", "object", "verdict", "visible_fraction", "rank", "score"};
   const auto name = [&](int object) {
     return object < 0 ? std::string("unknown") : object_names[static_cast<std::size_t>(object)];
   };
   for (const SceneRecord& scene : scenes) {
     for (std::size_t t = 0; t < scene.truth.size(); ++t) {
       table.rows.push_back({scene.method, scene.name, "truth", name(scene.truth[t].object),
-                            verdict_name(scene.verdicts.truth[t]), decimal(scene.truth[t].visible_fraction, 3), ""});
+                            verdict_name(scene.verdicts.truth[t]), decimal(scene.truth[t].visible_fraction, 3), "",
+                            ""});
     }
     for (std::size_t r = 0; r < scene.reported.size(); ++r) {
       table.rows.push_back({scene.method, scene.name, "report", name(scene.reported[r].object),
-                            verdict_name(scene.verdicts.reported[r]), "", std::to_string(scene.ranks[r])});
+                            verdict_name(scene.verdicts.reported[r]), "", std::to_string(scene.ranks[r]),
+                            decimal(scene.scores[r], 4)});
     }
   }
   return table;

@@ -16,7 +16,8 @@ struct SceneRecord {
   std::string name;
   std::vector<TrueObject> truth;
   std::vector<ReportedObject> reported;
-  std::vector<int> ranks;  // of the reports' hypotheses, from 1
+  std::vector<int> ranks;      // of the reports' hypotheses, from 1
+  std::vector<double> scores;  // of the reports
   SceneVerdicts verdicts;
   Statistics statistics;
   StageTimes milliseconds;
@@ -76,6 +77,10 @@ struct CountedShare {
 [[nodiscard]] Table short_table(const std::vector<SummaryRow>& rows);
 
 // One row a true object and a report, for looking into a result: scene, kind, object, verdict, visible fraction.
+// Is a score a probability? Reports by method and score, in bins: how many, mean score, share that is right or
+// indistinguishable with its interval.
+[[nodiscard]] Table calibration_table(const std::vector<SceneRecord>& scenes);
+
 [[nodiscard]] Table scene_table(const std::vector<SceneRecord>& scenes, const std::vector<std::string>& object_names);
 
 }  // namespace foresight

@@ -23,7 +23,7 @@ constexpr double kStretch = 1.2;         // of the impostors
 constexpr double kSameDistance = 5.0;    // of cells that show the same. Unit: mm.
 constexpr double kSameShare = 0.95;      // of the cells of poses that show the same
 constexpr double kLeastVisible = 0.3;    // an object hidden by more teaches nothing about right poses
-constexpr double kRidge = 0.1;           // keeps the weights finite where right and wrong lie apart
+constexpr double kRidge = 0.003;         // keeps the weights finite where right and wrong lie apart
 constexpr double kOverlapReserve = 0.7;  // of the least overlap that came to a right pose
 
 using Features = std::array<double, kEvidenceFeatureCount>;

@@ -13,7 +13,7 @@ namespace foresight {
 
 struct TwoWayOptions {
   double accepted = 0.5;        // a pose more probable than this is reported. Limit: (0, 1).
-  double sure = 0.99;           // a pose more probable than this ends the search among its rivals. Limit: (0, 1).
+  double sure = 0.95;           // a pose more probable than this ends the search among its rivals. Limit: (0, 1).
   double start_distance = 8.0;  // of data that overlap, before localization. Unit: mm. Limit: > 0.
   double same_distance = 4.0;   // starts this near, and
   double same_angle = 0.035;    // turned by less than 2 degrees, are tried once. Unit: mm, rad. Limit: > 0.

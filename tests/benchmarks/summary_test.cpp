@@ -17,6 +17,7 @@ SceneRecord scene(Verdict verdict, bool named, double visible, long verification
   if (named) {
     record.reported = {{0, Pose{}}};
     record.ranks = {2};
+    record.scores = {0.95};
     record.verdicts.reported = {verdict == Verdict::missed ? Verdict::wrong_pose : verdict};
   }
   return record;
@@ -57,10 +58,18 @@ TEST(Summary, of_no_scene_has_no_means) {
   EXPECT_EQ(summary_table({row}, 1).rows.front().size(), summary_table({row}, 1).header.size());
 }
 
+TEST(Summary, holds_scores_against_what_is_right) {
+  const Table table = calibration_table(four_scenes());
+  ASSERT_EQ(table.rows.size(), 1U);  // all reports score 0.95
+  EXPECT_EQ(table.rows.front()[3], "3");
+  EXPECT_EQ(table.rows.front()[4], "0.950");
+  EXPECT_EQ(table.rows.front()[5], "66.7");  // the wrong pose is not right, the indistinguishable one is
+}
+
 TEST(Table, rows_are_as_wide_as_the_header) {
   const std::vector<SceneRecord> scenes = four_scenes();
   const std::vector<SummaryRow> rows = {summarize("all", scenes)};
-  for (const Table& table : {summary_table(rows, 7), short_table(rows), scene_table(scenes, {"box"})}) {
+  for (const Table& table : {summary_table(rows, 7), short_table(rows), scene_table(scenes, {"box"}), calibration_table(scenes)}) {
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
   }
   EXPECT_EQ(scene_table(scenes, {"box"}).rows.size(), 7U);
