@@ -16,6 +16,7 @@
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
 #include "runtime/match_likelihoods.h"
+#include "runtime/recognize.h"
 
 namespace foresight {
 namespace {
@@ -215,9 +216,12 @@ bool recognized(const PotentialsOptions& options, const Setting& setting, const 
   method.potentials = setting.potentials;
   method.pruning = setting.pruning;
   method.most_verifications = options.budget;
-  const SceneRecord record =
-      recognize_and_score({objects, scored_objects(objects), database, series.settings.sensor, method}, "",
-                          scene.scan.image, truth_of(scene));
+  const Contestant contestant{setting.name, [&](const RangeImage& image, const PinholeCamera& camera) {
+                                return recognize(image, camera, database, method);
+                              }};
+  const SensorModel& sensor = series.settings.sensor;
+  const SceneRecord record = recognize_and_score({objects, scored_objects(objects), sensor}, contestant,
+                                                 {"", scene.scan.image, sensor.camera, truth_of(scene)});
   return record.verdicts.truth.front() == Verdict::right;
 }
 
