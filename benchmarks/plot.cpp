@@ -32,6 +32,13 @@ std::string quoted(const std::string& text) {
   return result;
 }
 
+// Names of ticks are format strings to gnuplot.
+std::string tick_name(const std::string& name) {
+  std::string result;
+  for (const char c : name) result.append(c == '%' ? 2 : 1, c);
+  return quoted(result);
+}
+
 std::string number(double value) { return std::isfinite(value) ? decimal(value, 9) : std::string("NaN"); }
 
 std::string data_block(const std::string& name, const Curve& curve) {
@@ -100,7 +107,7 @@ std::string plot_commands(const Plot& plot, std::size_t index) {
   } else {
     text += "set xtics rotate by -25 (";
     for (std::size_t i = 0; i < plot.x_names.size(); ++i)
-      text.append(i > 0 ? ", " : "").append(quoted(plot.x_names[i])).append(" ").append(std::to_string(i));
+      text.append(i > 0 ? ", " : "").append(tick_name(plot.x_names[i])).append(" ").append(std::to_string(i));
     text += ")\nset xrange [-0.6:" + decimal(static_cast<double>(plot.x_names.size()) - 0.4, 1) + "]\n";
   }
   return text + (is_empty(plot) ? std::string("plot [0:1][0:1] NaN title 'no data'") : drawings) + "\n";
