@@ -21,7 +21,7 @@ constexpr std::array<const char*, 7> kColours = {"#0072B2", "#D55E00", "#009E73"
                                                  "#E69F00", "#56B4E9", "#000000"};
 
 // In single quotes gnuplot reads everything literally but the quote itself.
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   std::string result(1, '\'');
   for (const char c : text) {
     if (c == '\n') continue;
@@ -30,6 +30,13 @@ std::string quoted(const std::string& text) {
   }
   result += '\'';
   return result;
+}
+
+// Names of ticks are format strings to gnuplot.
+std::string tick_name(const std::string& name) {
+  std::string result;
+  for (const char c : name) result.append(c == '%' ? 2 : 1, c);
+  return in_quotes(result);
 }
 
 std::string number(double value) { return std::isfinite(value) ? decimal(value, 9) : std::string("NaN"); }
@@ -65,7 +72,7 @@ std::string style_of(Curve::Style style) {
 // The words that draw one curve.
 std::string drawing(const std::string& block, const Curve& curve, std::size_t index) {
   const std::string colour = std::string(" lc rgb '") + kColours[index % kColours.size()] + "'";
-  const std::string title = curve.label.empty() ? " notitle" : " title " + quoted(curve.label);
+  const std::string title = curve.label.empty() ? " notitle" : " title " + in_quotes(curve.label);
   std::string text;
   if (!curve.low.empty()) text = block + " using 1:2:3:4 with yerrorbars pt 0 lw 1" + colour + " notitle, ";
   text.append(block).append(" using 1:2 with ").append(style_of(curve.style)).append(colour).append(title);
@@ -90,8 +97,8 @@ std::string plot_commands(const Plot& plot, std::size_t index) {
     drawings += drawing(name, plot.curves[c], c);
     bars = bars || plot.curves[c].style == Curve::Style::bars;
   }
-  text += "set title " + quoted(plot.title) + "\nset xlabel " + quoted(plot.x_label) + "\nset ylabel " +
-          quoted(plot.y_label) + "\n";
+  text += "set title " + in_quotes(plot.title) + "\nset xlabel " + in_quotes(plot.x_label) + "\nset ylabel " +
+          in_quotes(plot.y_label) + "\n";
   text += plot.logarithmic_x ? "set logscale x\n" : "unset logscale x\n";
   text += plot.logarithmic_y ? "set logscale y\n" : "unset logscale y\n";
   text += bars ? "set boxwidth 0.8 relative\nset yrange [0:*]\n" : "set yrange [*:*]\n";
@@ -100,7 +107,7 @@ std::string plot_commands(const Plot& plot, std::size_t index) {
   } else {
     text += "set xtics rotate by -25 (";
     for (std::size_t i = 0; i < plot.x_names.size(); ++i)
-      text.append(i > 0 ? ", " : "").append(quoted(plot.x_names[i])).append(" ").append(std::to_string(i));
+      text.append(i > 0 ? ", " : "").append(tick_name(plot.x_names[i])).append(" ").append(std::to_string(i));
     text += ")\nset xrange [-0.6:" + decimal(static_cast<double>(plot.x_names.size()) - 0.4, 1) + "]\n";
   }
   return text + (is_empty(plot) ? std::string("plot [0:1][0:1] NaN title 'no data'") : drawings) + "\n";
@@ -113,7 +120,7 @@ std::string script_for(const std::string& file, const std::vector<Plot>& plots, 
   const int rows = (count + columns - 1) / columns;
   const int height = kHeight + kLegendRow * static_cast<int>(legend);
   std::string text = "set terminal svg size " + std::to_string(kWidth * columns) + "," + std::to_string(height * rows) +
-                     " noenhanced font 'sans,13' background rgb 'white'\nset output " + quoted(file) +
+                     " noenhanced font 'sans,13' background rgb 'white'\nset output " + in_quotes(file) +
                      "\nset grid lc rgb '#dddddd'\nset border 3\nset tics nomirror\n"
                      "set key below vertical maxcols 2 noenhanced\nset pointintervalbox 0\nset datafile missing "
                      "'NaN'\nset offsets graph 0.03, "

@@ -43,11 +43,12 @@ TEST(Plot, holds_titles_and_labels_as_they_were_given) {
 TEST(Plot, names_stand_at_their_bars) {
   const TemporaryFolder folder;
   Plot plot = small_plot();
-  plot.x_names = {"stapler", "castle"};
+  plot.x_names = {"visible >= 50 %", "castle"};
   plot.curves = {{"", {0, 1}, {3, 4}, {2, 3}, {4, 5}, Curve::Style::bars}};
   const std::string file = folder.path() + "/bars.svg";
   write_plots(file, {plot});
   EXPECT_NE(read_text(file).find("castle"), std::string::npos);
+  EXPECT_NE(read_text(file).find("50 %<"), std::string::npos) << "a percent sign is no format";
 }
 
 TEST(Plot, of_nothing_says_so) {
