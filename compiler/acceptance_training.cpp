@@ -21,7 +21,8 @@ namespace {
 
 constexpr double kStretch = 1.2;         // of the impostors
 constexpr double kSameDistance = 5.0;    // of cells that show the same. Unit: mm.
-constexpr double kSameShare = 0.95;      // of the cells of poses that show the same
+constexpr double kRightShare = 0.9;      // of the cells of poses that show the same: right
+constexpr double kWrongShare = 0.8;      // fewer show the same: wrong; between them nothing is learnt
 constexpr double kLeastVisible = 0.3;    // an object hidden by more teaches nothing about right poses
 constexpr double kRidge = 0.003;         // keeps the weights finite where right and wrong lie apart
 constexpr double kOverlapReserve = 0.7;  // of the least overlap that came to a right pose
@@ -82,8 +83,8 @@ struct PosedModel {
   const Pose& T_sensor_model;
 };
 
-// Whether the sensor would see the same of both, each alone.
-bool looks_the_same(const PosedModel& a, const PosedModel& b, const PinholeCamera& camera) {
+// The share of the cells showing either, each alone, that show the same surface.
+double same_share(const PosedModel& a, const PosedModel& b, const PinholeCamera& camera) {
   const Rendering at_a = render(a.model, a.T_sensor_model, camera);
   const Rendering at_b = render(b.model, b.T_sensor_model, camera);
   const auto depth_at_b = [&](int row, int column) {
@@ -105,7 +106,7 @@ bool looks_the_same(const PosedModel& a, const PosedModel& b, const PinholeCamer
   }
   const auto shown_at_b = std::count_if(at_b.depth.begin(), at_b.depth.end(), [](float z) { return z > 0.0F; });
   const double either = shown_at_a + static_cast<double>(shown_at_b) - same;
-  return either > 0.0 && same >= kSameShare * either;
+  return either > 0.0 ? same / either : 0.0;
 }
 
 // The pose moved and turned about the object's centre.
@@ -182,16 +183,22 @@ class SceneTeacher {
   bool learn(const Pose& start) {
     const Pose pose = localize(model_, context_.sphere, start, context_.data, {}).T_sensor_model;
     const PosedModel posed{model_, pose};
-    const bool right = truth_ && looks_the_same(posed, {model_, *truth_}, context_.camera);
-    // An object that is there but hardly visible, or an impostor that a symmetric object or this view cannot be told
-    // from: such poses are neither right nor wrong examples.
-    if (!right && present_ && !truth_) return false;
-    for (const auto& [impostor, at] : impostors_) {
-      if (!right && looks_the_same(posed, {impostor, at}, context_.camera)) return false;
+    const double share = truth_ ? same_share(posed, {model_, *truth_}, context_.camera) : 0.0;
+    const bool right = share >= kRightShare;
+    if (right || is_wrong(posed, share)) {
+      const Features features = evidence_features(gather_evidence(model_, pose, labelled_));
+      (right ? lessons_.right : lessons_.wrong).push_back(features);
     }
-    const Features features = evidence_features(gather_evidence(model_, pose, labelled_));
-    (right ? lessons_.right : lessons_.wrong).push_back(features);
     return right;
+  }
+
+  // Neither right nor wrong: a pose of an object that is there but hardly visible, one a little beside the true one,
+  // and one at an impostor that this view, or a symmetry of the object, cannot be told from the object.
+  bool is_wrong(const PosedModel& posed, double share) const {
+    if (share >= kWrongShare || (present_ && !truth_)) return false;
+    return std::all_of(impostors_.begin(), impostors_.end(), [&](const auto& impostor) {
+      return same_share(posed, {impostor.first, impostor.second}, context_.camera) < kWrongShare;
+    });
   }
 
   const CompiledModel& model_;
