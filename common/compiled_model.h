@@ -51,12 +51,12 @@ struct SurfaceTemplate {
 
 // What two-way verification counts, as shares: the inputs of an AcceptanceModel (runtime/pose_evidence.h).
 enum EvidenceFeature : int {
-  kOwnedShare = 0,     // explained cells, weighted by the share of their regions, of those not hidden
+  kOwnedShare = 0,     // explained cells, weighted by the share of their regions, of those with data on or behind
   kContradictedShare,  // cells with data behind the surface or of another orientation
   kMissingShare,       // cells without data
   kHiddenShare,        // cells with data before the surface
   kLogExplained,       // log(1 + explained cells) / 10
-  kFoundFaces,         // faces at least half explained, of those drawn
+  kFoundPieces,        // triangles at least half explained, of those with data
 };
 inline constexpr int kEvidenceFeatureCount = 6;
 

@@ -25,7 +25,7 @@ constexpr double kRightShare = 0.9;      // of the cells of poses that show the 
 constexpr double kWrongShare = 0.8;      // fewer show the same: wrong; between them nothing is learnt
 constexpr double kLeastVisible = 0.3;    // an object hidden by more teaches nothing about right poses
 constexpr double kRidge = 0.003;         // keeps the weights finite where right and wrong lie apart
-constexpr double kOverlapReserve = 0.7;  // of the least overlap that came to a right pose
+constexpr double kOverlapReserve = 0.4;  // of the least overlap that came to a right pose: few scenes were looked at
 
 using Features = std::array<double, kEvidenceFeatureCount>;
 
@@ -226,7 +226,7 @@ Lessons lessons_of_scene(const std::vector<CadModel>& cast, const Database& data
 // Both classes always have a voice: what any object's perfect and worthless evidence looks like.
 void add_ideals(Lessons& lessons) {
   Features perfect{};
-  perfect[kOwnedShare] = perfect[kFoundFaces] = 1.0;
+  perfect[kOwnedShare] = perfect[kFoundPieces] = 1.0;
   perfect[kLogExplained] = 0.8;  // 3000 cells
   Features worthless{};
   worthless[kContradictedShare] = 1.0;

@@ -103,7 +103,7 @@ void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
   message.set_missing_share(acceptance.weights[kMissingShare]);
   message.set_hidden_share(acceptance.weights[kHiddenShare]);
   message.set_log_explained(acceptance.weights[kLogExplained]);
-  message.set_found_faces(acceptance.weights[kFoundFaces]);
+  message.set_found_pieces(acceptance.weights[kFoundPieces]);
   message.set_bias(acceptance.bias);
   message.set_least_overlap(acceptance.least_overlap);
   message.set_samples(static_cast<std::uint32_t>(acceptance.samples));

@@ -151,7 +151,7 @@ AcceptanceModel from_message(const v1::AcceptanceModel& message) {
   acceptance.weights[kMissingShare] = message.missing_share();
   acceptance.weights[kHiddenShare] = message.hidden_share();
   acceptance.weights[kLogExplained] = message.log_explained();
-  acceptance.weights[kFoundFaces] = message.found_faces();
+  acceptance.weights[kFoundPieces] = message.found_pieces();
   acceptance.bias = message.bias();
   acceptance.least_overlap = message.least_overlap();
   acceptance.samples = to_int(message.samples());

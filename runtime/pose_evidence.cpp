@@ -8,6 +8,8 @@
 namespace foresight {
 namespace {
 
+constexpr int kFewestCells = 12;  // that say something about a triangle
+
 // Whether all eight neighbours show the same surface going on: no outline and no inner edge of depth.
 bool inner(const Rendering& drawn, int row, int column, double step) {
   if (row < 1 || column < 1 || row + 1 >= drawn.rows || column + 1 >= drawn.columns) return false;
@@ -26,6 +28,91 @@ bool contradicts(const LabelledScan& scan, std::size_t region, const Eigen::Vect
                  const EvidenceOptions& options) {
   return scan.taken[region] || scan.regions[region].region.normal.dot(normal) < options.normal_cosine;
 }
+
+// A cell of the image in which the object is drawn.
+struct DrawnCell {
+  int cell = 0;
+  double depth = 0.0;  // z of the surface drawn. Unit: mm.
+  Eigen::Vector3d normal;
+  double facing = 0.0;  // -normal . ray, with a ray of z = 1: turns a difference of depth into one across the surface
+  double cosine = 0.0;  // of incidence
+};
+
+DrawnCell drawn_cell(const Rendering& drawn, int row, int column, const LabelledScan& scan) {
+  const auto at = static_cast<std::size_t>(drawn.cell(row, column));
+  const Eigen::Vector3d ray = scan.camera.ray(row + drawn.first_row, column + drawn.first_column);
+  DrawnCell cell;
+  cell.cell = scan.image.cell(row + drawn.first_row, column + drawn.first_column);
+  cell.depth = drawn.depth[at];
+  cell.normal = drawn.normal[static_cast<std::size_t>(drawn.triangle[at])].cast<double>();
+  cell.facing = -cell.normal.dot(ray);
+  cell.cosine = cell.facing / ray.norm();
+  return cell;
+}
+
+enum class Judgement { missing, front, behind, tilted, explained };
+
+Judgement judge(const DrawnCell& cell, const LabelledScan& scan, const EvidenceOptions& options) {
+  if (!scan.image.valid(cell.cell)) return Judgement::missing;
+  const double across = (static_cast<double>(scan.image[cell.cell].z()) - cell.depth) * cell.facing;
+  if (across > options.distance) return Judgement::behind;
+  if (across < -options.distance) return Judgement::front;
+  const int region = scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
+  const bool tilted = region >= 0 && contradicts(scan, static_cast<std::size_t>(region), cell.normal, options);
+  return tilted ? Judgement::tilted : Judgement::explained;
+}
+
+// Counts judgements. Cells at outlines count only for what regions the object explains.
+class Tally {
+ public:
+  Tally(std::size_t triangles, std::size_t regions) : of_triangle_(triangles), inner_of_region_(regions, 0) {
+    evidence_.explained_of_region.assign(regions, 0);
+  }
+
+  void add(int triangle, Judgement judgement, int region, bool inner) {
+    const bool explained = judgement == Judgement::explained;
+    if (explained && region >= 0) ++evidence_.explained_of_region[static_cast<std::size_t>(region)];
+    if (!inner) return;
+    ++evidence_.drawn;
+    evidence_.missing += judgement == Judgement::missing ? 1 : 0;
+    evidence_.front += judgement == Judgement::front ? 1 : 0;
+    evidence_.behind += judgement == Judgement::behind ? 1 : 0;
+    evidence_.tilted += judgement == Judgement::tilted ? 1 : 0;
+    if (judgement == Judgement::missing || judgement == Judgement::front) return;
+    Piece& piece = of_triangle_[static_cast<std::size_t>(triangle)];
+    ++piece.judged;
+    if (!explained) return;
+    ++piece.explained;
+    ++evidence_.explained;
+    if (region >= 0) {
+      ++inner_of_region_[static_cast<std::size_t>(region)];
+    } else {
+      evidence_.owned += 1.0;
+    }
+  }
+
+  [[nodiscard]] PoseEvidence sum(const std::vector<DescribedRegion>& regions) {
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      const auto cells = static_cast<double>(regions[r].region.cells.size());
+      evidence_.owned += inner_of_region_[r] * std::min(1.0, evidence_.explained_of_region[r] / cells);
+    }
+    for (const Piece& piece : of_triangle_) {
+      if (piece.judged < kFewestCells) continue;
+      ++evidence_.pieces;
+      evidence_.pieces_found += 2 * piece.explained >= piece.judged ? 1 : 0;
+    }
+    return std::move(evidence_);
+  }
+
+ private:
+  struct Piece {
+    int judged = 0;
+    int explained = 0;
+  };
+  PoseEvidence evidence_;
+  std::vector<Piece> of_triangle_;
+  std::vector<int> inner_of_region_;
+};
 
 }  // namespace
 
@@ -47,12 +134,12 @@ LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, co
 std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence) {
   const double drawn = std::max(1, evidence.drawn);
   std::array<double, kEvidenceFeatureCount> features{};
-  features[kOwnedShare] = evidence.owned / std::max(1, evidence.drawn - evidence.front);
+  features[kOwnedShare] = evidence.owned / std::max(1, evidence.explained + evidence.behind + evidence.tilted);
   features[kContradictedShare] = (evidence.behind + evidence.tilted) / drawn;
   features[kMissingShare] = evidence.missing / drawn;
   features[kHiddenShare] = evidence.front / drawn;
   features[kLogExplained] = 0.1 * std::log1p(evidence.explained);
-  features[kFoundFaces] = static_cast<double>(evidence.faces_found) / std::max(1, evidence.faces);
+  features[kFoundPieces] = static_cast<double>(evidence.pieces_found) / std::max(1, evidence.pieces);
   return features;
 }
 
@@ -65,67 +152,21 @@ double probability_right(const AcceptanceModel& model, const PoseEvidence& evide
 
 PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,
                              const EvidenceOptions& options) {
-  PoseEvidence evidence;
-  evidence.explained_of_region.assign(scan.regions.size(), 0);
   const Rendering drawn = render(model, T_sensor_model, scan.camera);
-  const double steepest = std::cos(scan.sensor.largest_incidence);
-  std::vector<std::array<int, 2>> of_triangle(model.triangles.size(), {0, 0});  // drawn, explained
-  std::vector<int> explained_inner(scan.regions.size(), 0);
-  double squares = 0.0;
+  Tally tally(model.triangles.size(), scan.regions.size());
   for (int row = 0; row < drawn.rows; ++row) {
     for (int column = 0; column < drawn.columns; ++column) {
       const auto at = static_cast<std::size_t>(drawn.cell(row, column));
-      const int triangle = drawn.triangle[at];
-      if (triangle < 0) continue;
-      const Eigen::Vector3f& normal = drawn.normal[static_cast<std::size_t>(triangle)];
-      const Eigen::Vector3d ray = scan.camera.ray(row + drawn.first_row, column + drawn.first_column);
-      const double facing = -normal.cast<double>().dot(ray);  // times |ray|: the cosine of incidence
-      if (facing <= steepest * ray.norm()) continue;          // the sensor gives no data here
-      const int cell = scan.image.cell(row + drawn.first_row, column + drawn.first_column);
-      // A cell's own depth changes by this much across its sides.
-      const double slope = drawn.depth[at] / scan.camera.fx / std::max(facing, 0.05);
-      const bool counts = inner(drawn, row, column, options.distance + 3.0 * slope);
-      if (counts) {
-        ++evidence.drawn;
-        ++of_triangle[static_cast<std::size_t>(triangle)][0];
-      }
-      if (!scan.image.valid(cell)) {
-        if (counts) ++evidence.missing;
-        continue;
-      }
-      const double across = (static_cast<double>(scan.image[cell].z()) - drawn.depth[at]) * facing;  // along -normal
-      if (std::abs(across) > options.distance) {
-        if (counts) ++(across > 0.0 ? evidence.behind : evidence.front);
-        continue;
-      }
-      const int region = scan.labels[static_cast<std::size_t>(cell)] - 1;
-      if (region >= 0 && contradicts(scan, static_cast<std::size_t>(region), normal.cast<double>(), options)) {
-        if (counts) ++evidence.tilted;
-        continue;
-      }
-      if (region >= 0) ++evidence.explained_of_region[static_cast<std::size_t>(region)];
-      if (!counts) continue;
-      ++evidence.explained;
-      ++of_triangle[static_cast<std::size_t>(triangle)][1];
-      squares += across * across;
-      if (region >= 0) {
-        ++explained_inner[static_cast<std::size_t>(region)];
-      } else {
-        evidence.owned += 1.0;
-      }
+      if (drawn.triangle[at] < 0) continue;
+      const DrawnCell cell = drawn_cell(drawn, row, column, scan);
+      if (cell.cosine <= std::cos(scan.sensor.largest_incidence)) continue;  // the sensor gives no data here
+      // Depth changes by this much from one cell to the next.
+      const double step = drawn.depth[at] / scan.camera.fx / std::max(cell.cosine, 0.05);
+      tally.add(drawn.triangle[at], judge(cell, scan, options), scan.labels[static_cast<std::size_t>(cell.cell)] - 1,
+                inner(drawn, row, column, options.distance + 3.0 * step));
     }
   }
-  for (std::size_t r = 0; r < scan.regions.size(); ++r) {
-    const double cells = static_cast<double>(scan.regions[r].region.cells.size());
-    evidence.owned += explained_inner[r] * std::min(1.0, evidence.explained_of_region[r] / cells);
-  }
-  for (const auto& [shown, explained] : of_triangle) {
-    if (shown < 12) continue;
-    ++evidence.faces;
-    evidence.faces_found += 2 * explained >= shown ? 1 : 0;
-  }
-  if (evidence.explained > 0) evidence.residual = std::sqrt(squares / evidence.explained);
-  return evidence;
+  return tally.sum(scan.regions);
 }
 
 }  // namespace foresight

@@ -38,16 +38,15 @@ struct EvidenceOptions {
 
 // Counts of the cells that would show the object, leaving out its outlines, where half a cell decides.
 struct PoseEvidence {
-  int drawn = 0;          // cells
-  int explained = 0;      // data on the surface, with its normal where a region tells it
-  int tilted = 0;         // data on the surface, but of a region with another normal
-  int behind = 0;         // data behind the surface: the sensor saw through it
-  int front = 0;          // data before the surface: hidden by something
-  int missing = 0;        // no data
-  double owned = 0.0;     // explained cells, each counting the share of its region that the object explains
-  int faces = 0;          // drawn faces of at least 12 cells ...
-  int faces_found = 0;    // ... and of them those of which at least half is explained
-  double residual = 0.0;  // root mean square distance of explained cells across the surface. Unit: mm.
+  int drawn = 0;         // cells
+  int explained = 0;     // data on the surface, with its normal where a region tells it
+  int tilted = 0;        // data on the surface, but of a region with another normal
+  int behind = 0;        // data behind the surface: the sensor saw through it
+  int front = 0;         // data before the surface: hidden by something
+  int missing = 0;       // no data
+  double owned = 0.0;    // explained cells, each counting the share of its region that the object explains
+  int pieces = 0;        // drawn triangles with at least 12 cells whose data say something: not missing, not hidden
+  int pieces_found = 0;  // of them, those of which at least half of these cells are explained
   std::vector<int> explained_of_region;  // cells, by region
 };
 
