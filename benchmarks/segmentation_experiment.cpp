@@ -44,7 +44,7 @@ std::vector<Segmenter> segmenters_for(const SensorModel& sensor, const PinholeCa
                           return label_image(regions, image.size());
                         }});
 #ifdef FORESIGHT_RIVALS
-  segmenters.push_back({"pcl", pcl_planes});
+  segmenters.push_back({"pcl", [](const RangeImage& image) { return pcl_planes(image); }});
 #endif
   return segmenters;
 }
