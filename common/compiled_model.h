@@ -55,10 +55,9 @@ enum EvidenceFeature : int {
   kContradictedShare,  // cells with data behind the surface or of another orientation
   kMissingShare,       // cells without data
   kHiddenShare,        // cells with data before the surface
-  kLogExplained,       // log(1 + explained cells) / 10
   kFoundPieces,        // triangles at least half explained, of those with data
 };
-inline constexpr int kEvidenceFeatureCount = 6;
+inline constexpr int kEvidenceFeatureCount = 5;
 
 // How probable it is that a pose with this evidence is right: a logistic model that the compiler fits to simulated right
 // and wrong poses of the object.

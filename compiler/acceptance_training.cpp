@@ -227,11 +227,27 @@ Lessons lessons_of_scene(const std::vector<CadModel>& cast, const Database& data
 void add_ideals(Lessons& lessons) {
   Features perfect{};
   perfect[kOwnedShare] = perfect[kFoundPieces] = 1.0;
-  perfect[kLogExplained] = 0.8;  // 3000 cells
   Features worthless{};
   worthless[kContradictedShare] = 1.0;
   lessons.right.push_back(perfect);
   lessons.wrong.push_back(worthless);
+}
+
+// Explained cells speak for a pose, everything else against it. A weight that the few samples give another sign is
+// noise: its evidence is left out.
+LogisticFit fit_with_signs(Eigen::MatrixXd features, const Eigen::VectorXd& labels) {
+  while (true) {
+    LogisticFit fit = fit_logistic(features, labels, kRidge);
+    bool all_fit = true;
+    for (int k = 0; k < kEvidenceFeatureCount; ++k) {
+      const bool speaks_for = k == kOwnedShare || k == kFoundPieces;
+      const bool right_sign = speaks_for ? fit.weights[k] >= 0.0 : fit.weights[k] <= 0.0;
+      if (right_sign) continue;
+      features.col(k).setZero();  // the ridge then makes its weight zero
+      all_fit = false;
+    }
+    if (all_fit) return fit;
+  }
 }
 
 }  // namespace
@@ -266,7 +282,7 @@ AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compi
     features.row(i) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), kEvidenceFeatureCount);
     labels[i] = right ? 1.0 : 0.0;
   }
-  const LogisticFit fit = fit_logistic(features, labels, kRidge);
+  const LogisticFit fit = fit_with_signs(features, labels);
   AcceptanceModel model;
   for (int k = 0; k < kEvidenceFeatureCount; ++k) model.weights[static_cast<std::size_t>(k)] = fit.weights[k];
   model.bias = fit.bias;

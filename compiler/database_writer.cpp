@@ -102,7 +102,6 @@ void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
   message.set_contradicted_share(acceptance.weights[kContradictedShare]);
   message.set_missing_share(acceptance.weights[kMissingShare]);
   message.set_hidden_share(acceptance.weights[kHiddenShare]);
-  message.set_log_explained(acceptance.weights[kLogExplained]);
   message.set_found_pieces(acceptance.weights[kFoundPieces]);
   message.set_bias(acceptance.bias);
   message.set_least_overlap(acceptance.least_overlap);

@@ -150,7 +150,6 @@ AcceptanceModel from_message(const v1::AcceptanceModel& message) {
   acceptance.weights[kContradictedShare] = message.contradicted_share();
   acceptance.weights[kMissingShare] = message.missing_share();
   acceptance.weights[kHiddenShare] = message.hidden_share();
-  acceptance.weights[kLogExplained] = message.log_explained();
   acceptance.weights[kFoundPieces] = message.found_pieces();
   acceptance.bias = message.bias();
   acceptance.least_overlap = message.least_overlap();

@@ -8,6 +8,7 @@
 namespace foresight {
 namespace {
 
+constexpr double kDoubt = 30.0;   // cells against every pose, so that a handful of cells for it makes none certain
 constexpr int kFewestCells = 12;  // that say something about a triangle
 
 // Whether all eight neighbours show the same surface going on: no outline and no inner edge of depth.
@@ -134,11 +135,10 @@ LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, co
 std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence) {
   const double drawn = std::max(1, evidence.drawn);
   std::array<double, kEvidenceFeatureCount> features{};
-  features[kOwnedShare] = evidence.owned / std::max(1, evidence.explained + evidence.behind + evidence.tilted);
+  features[kOwnedShare] = evidence.owned / (kDoubt + evidence.explained + evidence.behind + evidence.tilted);
   features[kContradictedShare] = (evidence.behind + evidence.tilted) / drawn;
   features[kMissingShare] = evidence.missing / drawn;
   features[kHiddenShare] = evidence.front / drawn;
-  features[kLogExplained] = 0.1 * std::log1p(evidence.explained);
   features[kFoundPieces] = static_cast<double>(evidence.pieces_found) / std::max(1, evidence.pieces);
   return features;
 }
