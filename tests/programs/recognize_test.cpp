@@ -120,7 +120,7 @@ TEST(RecognizeProgram, json_has_the_documented_keys_in_their_order) {
   EXPECT_EQ(keys(json["detections"][0]),
             (Names{"object", "pose", "score", "alpha", "beta", "gamma", "rank", "faces", "regions"}));
   EXPECT_EQ(keys(json["statistics"]), (Names{"regions", "possible_matches", "threshold_matches", "active_matches",
-                                             "hypotheses", "verifications", "energy_evaluations"}));
+                                             "hypotheses", "verifications", "energy_evaluations", "pose_checks"}));
   EXPECT_EQ(keys(json["milliseconds"]),
             (Names{"read", "extract", "field", "hypotheses", "localize", "verify", "total"}));
   // Also for readers that go by the text: one object without blanks, the numbers in full precision.
