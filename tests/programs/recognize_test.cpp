@@ -159,6 +159,19 @@ TEST(RecognizeProgram, json_values_are_what_their_names_say) {
   EXPECT_LE(parts, json["milliseconds"]["total"].get<double>() + 1e-6);
 }
 
+TEST(RecognizeProgram, judges_poses_by_the_method_asked_for) {
+  const std::string scan = stick_scene().scan;
+  const Json two_way = recognized(two_objects(), scan, {"--method", "two-way"});
+  EXPECT_EQ(two_way["detections"], recognized(two_objects(), scan)["detections"]);
+  ASSERT_FALSE(two_way["detections"].empty());
+  for (const Json& detection : two_way["detections"]) EXPECT_GE(detection["score"].get<double>(), 0.5);
+  EXPECT_GE(two_way["statistics"]["pose_checks"], two_way["statistics"]["verifications"]);
+  const Json paper = recognized(two_objects(), scan, {"--method", "paper"});
+  ASSERT_FALSE(paper["detections"].empty());
+  for (const Json& detection : paper["detections"]) EXPECT_EQ(detection["score"], detection["alpha"]);
+  EXPECT_EQ(paper["statistics"]["pose_checks"], 0);
+}
+
 TEST(RecognizeProgram, says_the_same_twice) {
   std::vector<std::string> arguments = {"recognize", two_objects(), "--format", "json"};
   for (const SimulatedScene& scene : pair_scenes()) arguments.push_back(scene.scan);

@@ -156,16 +156,24 @@ TEST(PoseEvidence, a_region_with_another_normal_contradicts) {
   expect_counts_add_up(steep);
 }
 
+// Along the ray, a step across a slanting surface is longer.
 TEST(PoseEvidence, data_agree_within_the_distance_across_the_surface) {
-  for (const double off : {-4.5, -3.5, 3.5, 4.5}) {
-    const Seen seen(test::render({test::facing({0, 0, 900 + off}, 200, 200)}, PinholeCamera{}));
-    const PoseEvidence e = gather_evidence(plate(), {}, seen.labelled());
-    EXPECT_EQ(e.explained, std::abs(off) < 4.0 ? e.drawn : 0);
-    EXPECT_EQ(e.behind, off > 4.0 ? e.drawn : 0);
-    EXPECT_EQ(e.front, off < -4.0 ? e.drawn : 0);
-    EvidenceOptions wider;
-    wider.distance = 5.0;
-    EXPECT_EQ(gather_evidence(plate(), {}, seen.labelled(), wider).explained, e.drawn);
+  for (const double angle : {0.0, 0.5, 1.0}) {
+    const Eigen::Matrix3d rotation = rotation_from_vector({0, angle, 0});
+    const Vector3d centre(0, 0, 900);
+    const Pose pose{rotation, centre - rotation * centre};
+    for (const double off : {-4.5, -3.5, 3.5, 4.5}) {
+      const Pose wall{rotation, centre + off * rotation.col(2)};
+      const Seen seen(test::render({test::moved(test::facing({0, 0, 0}, 200, 200), wall)}, PinholeCamera{}));
+      const PoseEvidence e = gather_evidence(plate(), pose, seen.labelled());
+      ASSERT_GT(e.drawn, 500);
+      EXPECT_EQ(e.explained, std::abs(off) < 4.0 ? e.drawn : 0);
+      EXPECT_EQ(e.behind, off > 4.0 ? e.drawn : 0);
+      EXPECT_EQ(e.front, off < -4.0 ? e.drawn : 0);
+      EvidenceOptions wider;
+      wider.distance = 5.0;
+      EXPECT_EQ(gather_evidence(plate(), pose, seen.labelled(), wider).explained, e.drawn);
+    }
   }
 }
 
