@@ -77,6 +77,17 @@ TEST(PoseEvidence, the_true_pose_is_explained) {
   expect_counts_add_up(e);
 }
 
+TEST(PoseEvidence, outlines_half_a_cell_off_do_not_count) {
+  const Seen seen = box_seen();
+  for (const Vector3d& move : {Vector3d(0.5, 0, 0), Vector3d(-0.5, 0, 0), Vector3d(0, 0.5, 0), Vector3d(0, -0.5, 0)}) {
+    const PoseEvidence e = box_evidence(seen, test::moved(test::box_pose(), move, {0, 0, 0}));
+    EXPECT_GT(e.drawn, 500);
+    EXPECT_EQ(e.missing, 0) << move.transpose();
+    EXPECT_EQ(e.behind + e.front, 0) << move.transpose();
+    EXPECT_LT(e.tilted, 0.03 * e.drawn) << move.transpose();  // creases do: the region beyond has another normal
+  }
+}
+
 TEST(PoseEvidence, an_absent_object_is_missing_before_nothing) {
   const PoseEvidence e = box_evidence(Seen(RangeImage(240, 256)));
   EXPECT_GT(e.drawn, 500);
