@@ -45,6 +45,7 @@ std::array<int, 2> inside(const std::array<Affine, 3>& edges, double row, int fi
       return {1, 0};
     }
   }
+  if (!(low <= high)) return {1, 0};  // also keeps both within the columns asked for
   return {static_cast<int>(std::ceil(low)), static_cast<int>(std::floor(high))};
 }
 
@@ -66,8 +67,11 @@ void draw(const std::array<const Corner*, 3>& corners, int triangle, const Pinho
   const std::array<Affine, 3> edges = {edge_function(p, q), edge_function(q, r), edge_function(r, p)};
   const Affine inverse = inverse_depth(normal, offset, camera);
   const auto [lowest, highest] = std::minmax({p.y(), q.y(), r.y()});
-  const int last_row = std::min(rendering.first_row + rendering.rows - 1, static_cast<int>(std::floor(highest)));
-  for (int row = std::max(rendering.first_row, static_cast<int>(std::ceil(lowest))); row <= last_row; ++row) {
+  // Compared before they become integers: vertices close to the camera's plane project beyond those.
+  const int end_row = rendering.first_row + rendering.rows;
+  const int first_row = static_cast<int>(std::ceil(std::clamp<double>(lowest, rendering.first_row, end_row)));
+  const int last_row = static_cast<int>(std::floor(std::clamp<double>(highest, rendering.first_row - 1, end_row - 1)));
+  for (int row = first_row; row <= last_row; ++row) {
     const auto [first, last] =
         inside(edges, row, rendering.first_column, rendering.first_column + rendering.columns - 1);
     for (int column = first; column <= last; ++column) {
@@ -98,12 +102,16 @@ Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const P
     high = high.cwiseMax(corner.image);
     corners.push_back(corner);
   }
-  rendering.first_column = std::max(0, static_cast<int>(std::ceil(std::max(low.x(), 0.0))));
-  rendering.first_row = std::max(0, static_cast<int>(std::ceil(std::max(low.y(), 0.0))));
-  rendering.columns =
-      std::max(0, static_cast<int>(std::floor(std::min(high.x(), camera.columns - 1.0))) - rendering.first_column + 1);
-  rendering.rows =
-      std::max(0, static_cast<int>(std::floor(std::min(high.y(), camera.rows - 1.0))) - rendering.first_row + 1);
+  const auto first = [](double value, int cells) {
+    return static_cast<int>(std::ceil(std::clamp<double>(value, 0.0, cells)));
+  };
+  const auto last = [](double value, int cells) {
+    return static_cast<int>(std::floor(std::clamp<double>(value, -1.0, cells - 1.0)));
+  };
+  rendering.first_column = first(low.x(), camera.columns);
+  rendering.first_row = first(low.y(), camera.rows);
+  rendering.columns = std::max(0, last(high.x(), camera.columns) - rendering.first_column + 1);
+  rendering.rows = std::max(0, last(high.y(), camera.rows) - rendering.first_row + 1);
   const auto cells = static_cast<std::size_t>(rendering.rows) * static_cast<std::size_t>(rendering.columns);
   rendering.depth.assign(cells, 0.0F);
   rendering.triangle.assign(cells, -1);

@@ -57,6 +57,10 @@ void expect_same(const CompiledModel& a, const CompiledModel& b) {
     expect_same(a.pairs[i].densities, b.pairs[i].densities);
   }
   expect_same(a.surface, b.surface);
+  EXPECT_EQ(a.acceptance.weights, b.acceptance.weights);
+  EXPECT_EQ(a.acceptance.bias, b.acceptance.bias);
+  EXPECT_EQ(a.acceptance.least_overlap, b.acceptance.least_overlap);
+  EXPECT_EQ(a.acceptance.samples, b.acceptance.samples);
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.triangles, b.triangles);
 }
@@ -77,6 +81,15 @@ TEST(DatabaseWriter, a_sensor_without_projector_stays_without) {
   CompiledDatabase database = test::synthetic_database();
   database.sensor.projector.reset();
   EXPECT_FALSE(decode_database(encode_database(database), "x.db").sensor.projector);
+}
+
+TEST(DatabaseWriter, a_model_without_acceptance_model_stays_without) {
+  CompiledDatabase database = test::synthetic_database();
+  database.models[0].acceptance = {};
+  const CompiledDatabase read = decode_database(encode_database(database), "x.db");
+  EXPECT_EQ(read.models[0].acceptance.samples, 0);
+  EXPECT_EQ(read.models[0].acceptance.weights, AcceptanceModel{}.weights);
+  EXPECT_GT(read.models[1].acceptance.samples, 0);
 }
 
 TEST(DatabaseWriter, same_content_gives_the_same_bytes) {

@@ -8,7 +8,9 @@
 #include <numbers>
 #include <thread>
 
+#include "runtime/rendering.h"
 #include "tests/compiler/solids.h"
+#include "tests/support.h"
 
 namespace foresight {
 namespace {
@@ -358,6 +360,36 @@ TEST(SensorSimulator, sees_is_blocked_by_another_object_and_by_a_plane) {
   const SimulatedScene walled({&object, 1}, {&wall, 1});
   EXPECT_FALSE(walled.sees({500, 0, 0}, {0, 0, 900}));
   EXPECT_TRUE(walled.sees({500, 0, 0}, {0, 0, 590}));
+}
+
+// Two ways to the same surface: Embree's rays, and triangles filled cell by cell.
+TEST(SensorSimulator, sees_what_the_runtime_draws) {
+  SensorModel sensor;
+  sensor.depth_quantization = 0.0;
+  for (const char* name : {"castle", "stick"}) {
+    const CadModel cad = read_cad_model(test::project_file(std::string("models/") + name + ".off"));
+    CompiledModel compiled;
+    for (const Vector3d& vertex : cad.vertices) compiled.vertices.push_back(vertex.cast<float>());
+    compiled.triangles = cad.triangles;
+    for (std::uint64_t view = 0; view < 8; ++view) {
+      const PlacedObject object{&cad, some_view(view)};
+      const RangeImage image = SimulatedScene({&object, 1}).scan(sensor, Random(1)).image;
+      const Rendering drawn = render(compiled, object.T_sensor_model, sensor.camera);
+      int same = 0;
+      int differ = 0;
+      for (int cell = 0; cell < image.size(); ++cell) {
+        const int row = cell / image.columns - drawn.first_row;
+        const int column = cell % image.columns - drawn.first_column;
+        const bool inside = row >= 0 && row < drawn.rows && column >= 0 && column < drawn.columns;
+        const float depth = inside ? drawn.depth[static_cast<std::size_t>(drawn.cell(row, column))] : 0.0F;
+        if (!image.valid(cell) && depth == 0.0F) continue;
+        const bool equal = image.valid(cell) && std::abs(image[cell].z() - depth) < 0.01F;
+        (equal ? same : differ) += 1;
+      }
+      EXPECT_GT(same, 500) << name << ", view " << view;
+      EXPECT_LE(differ, 3) << name << ", view " << view;  // on outlines, where rounding decides
+    }
+  }
 }
 
 TEST(ViewPose, puts_the_centre_on_the_axis_and_looks_along_the_direction) {

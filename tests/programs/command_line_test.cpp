@@ -74,6 +74,7 @@ TEST(CommandLine, refuses_what_foresight_does_not_know) {
       {{"recognize", db, scan, "--deadline-ms", "99999999999"}, "--deadline-ms"},
       {{"recognize", db, scan, "--top", "-1"}, "--top"},
       {{"recognize", db, scan, "--max-verifications", "-1"}, "--max-verifications"},
+      {{"recognize", db, scan, "--method", "guess"}, "--method"},
       {{"recognize", db, scan, "--loss", "absolute"}, "--loss"},
       {{"recognize", db, scan, "--prior-sign", "plus"}, "--prior-sign"},
       {{"recognize", db, scan, "--pruning", "some"}, "--pruning"},

@@ -120,7 +120,7 @@ TEST(RecognizeProgram, json_has_the_documented_keys_in_their_order) {
   EXPECT_EQ(keys(json["detections"][0]),
             (Names{"object", "pose", "score", "alpha", "beta", "gamma", "rank", "faces", "regions"}));
   EXPECT_EQ(keys(json["statistics"]), (Names{"regions", "possible_matches", "threshold_matches", "active_matches",
-                                             "hypotheses", "verifications", "energy_evaluations"}));
+                                             "hypotheses", "verifications", "energy_evaluations", "pose_checks"}));
   EXPECT_EQ(keys(json["milliseconds"]),
             (Names{"read", "extract", "field", "hypotheses", "localize", "verify", "total"}));
   // Also for readers that go by the text: one object without blanks, the numbers in full precision.
@@ -157,6 +157,19 @@ TEST(RecognizeProgram, json_values_are_what_their_names_say) {
   double parts = 0.0;
   for (const auto& [stage, time] : json["milliseconds"].items()) parts += stage == "total" ? 0.0 : time.get<double>();
   EXPECT_LE(parts, json["milliseconds"]["total"].get<double>() + 1e-6);
+}
+
+TEST(RecognizeProgram, judges_poses_by_the_method_asked_for) {
+  const std::string scan = stick_scene().scan;
+  const Json two_way = recognized(two_objects(), scan, {"--method", "two-way"});
+  EXPECT_EQ(two_way["detections"], recognized(two_objects(), scan)["detections"]);
+  ASSERT_FALSE(two_way["detections"].empty());
+  for (const Json& detection : two_way["detections"]) EXPECT_GE(detection["score"].get<double>(), 0.5);
+  EXPECT_GE(two_way["statistics"]["pose_checks"], two_way["statistics"]["verifications"]);
+  const Json paper = recognized(two_objects(), scan, {"--method", "paper"});
+  ASSERT_FALSE(paper["detections"].empty());
+  for (const Json& detection : paper["detections"]) EXPECT_EQ(detection["score"], detection["alpha"]);
+  EXPECT_EQ(paper["statistics"]["pose_checks"], 0);
 }
 
 TEST(RecognizeProgram, says_the_same_twice) {

@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "common/scan_file.h"
+#include "compiler/database_writer.h"
+#include "runtime/database.h"
 #include "schema/container.h"
 #include "tests/programs/workshop.h"
 
@@ -111,6 +113,16 @@ TEST(RuntimeRefusals, database_of_a_newer_schema) {
   sections[0].content[1] = static_cast<char>(kSchemaVersion + 1);
   expect_database_refused(4, made("schema.db", encode_container(sections)),
                           "schema version " + std::to_string(kSchemaVersion + 1));
+}
+
+// As foresightc wrote them before there was the two-way method, which recognition uses unless told otherwise.
+TEST(RuntimeRefusals, databases_without_acceptance_models) {
+  CompiledDatabase content = decode_database(file_content(one_object()), one_object());
+  content.models[0].acceptance = {};
+  const std::string old = made("old.db", encode_database(content));
+  const std::string scan = stick_scene().scan;
+  expect_refused(foresight({"recognize", old, scan}), 4, "foresight", old, "--method paper");
+  EXPECT_EQ(foresight({"recognize", old, scan, "--method", "paper"}).err, "");
 }
 
 TEST(RuntimeRefusals, scans_that_are_none) {

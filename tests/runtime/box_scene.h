@@ -26,6 +26,29 @@ inline Eigen::Vector3d box_half_size() { return 0.5 * kBoxSpacing * kBoxCells.ca
 // Face 2 * axis looks along -axis, face 2 * axis + 1 along +axis.
 inline Eigen::Vector3d box_normal(int face) { return (face % 2 == 1 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(face / 2); }
 
+// Corner i lies on the positive side of the axes whose bits are set in i.
+inline std::vector<Eigen::Vector3f> box_corners() {
+  std::vector<Eigen::Vector3f> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d side((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 4) != 0 ? 1.0 : -1.0);
+    corners.emplace_back((kBoxCentre + side.cwiseProduct(box_half_size())).cast<float>());
+  }
+  return corners;
+}
+
+// Two for each face, in the order of the faces, counter-clockwise seen from outside.
+inline std::vector<std::array<int, 3>> box_triangles() {
+  std::vector<std::array<int, 3>> triangles;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = 1 << ((axis + 1) % 3);
+    const int v = 1 << ((axis + 2) % 3);
+    const int w = 1 << axis;
+    triangles.insert(triangles.end(), {{0, u | v, u}, {0, v, u | v}});
+    triangles.insert(triangles.end(), {{w, w | u, w | u | v}, {w, w | u | v, w | v}});
+  }
+  return triangles;
+}
+
 // Neighbours of the point at a place in the grid: those one spacing away along an axis.
 inline std::vector<int> box_neighbours(const Eigen::Vector3i& at, const std::map<std::array<int, 3>, int>& index) {
   std::vector<int> neighbours;
@@ -75,6 +98,8 @@ inline CompiledModel box_model() {
   model.centre = kBoxCentre;
   model.diameter = 2.0 * box_half_size().norm();
   model.faces.resize(6);
+  model.vertices = box_corners();
+  model.triangles = box_triangles();
   model.surface.spacing = kBoxSpacing;
   model.surface.points = box_points();
   const ViewingSphere sphere(kAspectCells);

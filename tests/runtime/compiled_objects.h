@@ -31,6 +31,7 @@ inline const Database& compiled_objects() {
   static const Database database = [] {
     CompileOptions options;
     options.samples.views = 80;
+    options.acceptance.scenes = 12;
     CompiledDatabase content = new_database(paper_sensor(), options);
     for (const CadModel& cad : castle_and_stick()) {
       content.models.push_back(compile_model(cad, content.sensor, options));

@@ -10,6 +10,7 @@
 #include "common/errors.h"
 #include "compiler/database_writer.h"
 #include "foresight/v1/database.pb.h"
+#include "runtime/recognize.h"
 #include "schema/container.h"
 #include "tests/runtime/synthetic_database.h"
 #include "tests/support.h"
@@ -265,6 +266,42 @@ TEST(DecodeDatabase, refuses_bad_meshes) {
   expect_model_inconsistent("vertex 2: ", [](CompiledModel& m) { m.vertices[2].y() = kNanF; });
   expect_model_inconsistent("triangle 3: ", [](CompiledModel& m) { m.triangles[3][1] = 4; });
   expect_model_inconsistent("triangle 3: ", [](CompiledModel& m) { m.triangles[3][1] = -1; });
+}
+
+TEST(DecodeDatabase, refuses_bad_acceptance_models) {
+  const auto expect_bad = [](const std::string& words, const std::function<void(AcceptanceModel&)>& change) {
+    expect_model_inconsistent(words, [&](CompiledModel& m) { change(m.acceptance); });
+  };
+  for (const double value : {kNan, kInfinity, -kInfinity}) {
+    for (std::size_t k = 0; k < kEvidenceFeatureCount; ++k) {
+      expect_bad("a weight of the acceptance model", [&](AcceptanceModel& a) { a.weights[k] = value; });
+    }
+    expect_bad("a weight of the acceptance model", [&](AcceptanceModel& a) { a.bias = value; });
+    expect_bad("the least overlap", [&](AcceptanceModel& a) { a.least_overlap = value; });
+  }
+  expect_bad("the least overlap", [](AcceptanceModel& a) { a.least_overlap = -0.01; });
+  expect_bad("the least overlap", [](AcceptanceModel& a) { a.least_overlap = 1.01; });
+  const std::string bytes =
+      with_messages([](v1::Header&, v1::Model& m) { m.mutable_acceptance()->set_samples(0xFFFFFFFF); });
+  EXPECT_EQ(error_of(bytes).fault(), DatabaseFault::inconsistent);
+}
+
+TEST(CheckMethod, two_way_needs_an_acceptance_model_of_every_object) {
+  RecognizeOptions paper;
+  paper.method = Method::paper;
+  EXPECT_NO_THROW(check_method({}, Database(test::synthetic_database()), "x.db"));
+  CompiledDatabase content = test::synthetic_database();
+  content.models[1].acceptance = {};
+  const Database old(std::move(content));
+  EXPECT_NO_THROW(check_method(paper, old, "x.db"));
+  try {
+    check_method({}, old, "x.db");
+    ADD_FAILURE() << "the database was accepted";
+  } catch (const DatabaseError& error) {
+    EXPECT_EQ(error.fault(), DatabaseFault::incompatible);
+    EXPECT_EQ(error.file(), "x.db");
+    EXPECT_NE(error.cause().find(old.models()[1].name), std::string::npos) << error.cause();
+  }
 }
 
 TEST(DecodeSensor, knows_a_sensor_from_other_bytes) {

@@ -149,6 +149,18 @@ TEST(Recognizer, refuses_views_without_data_or_without_a_pinhole_grid) {
   refused(scattered);
 }
 
+TEST(Recognizer, uses_databases_without_acceptance_models_by_the_papers_method_alone) {
+  const Client client;
+  CompiledDatabase content = compiled_objects().content();
+  for (CompiledModel& model : content.models) model.acceptance = {};
+  const std::string old = client.folder.file("old.db");
+  std::ofstream(old, std::ios::binary) << encode_database(content);
+  EXPECT_THROW(Recognizer{old}, DatabaseError);
+  RecognizeOptions paper;
+  paper.method = Method::paper;
+  expect_same(Recognizer(old, paper).recognize(client.view()), Recognizer(client.file, paper).recognize(client.view()));
+}
+
 TEST(Recognizer, refuses_files_and_options_it_cannot_use) {
   const Client client;
   EXPECT_THROW(Recognizer(client.folder.file("missing.db")), InputError);

@@ -26,6 +26,14 @@ RecognitionResult recognize_in(const RangeImage& image, const RecognizeOptions& 
   return recognize(image, camera(), compiled_objects(), options, deadline);
 }
 
+constexpr std::array<Method, 2> kMethods = {Method::two_way, Method::paper};
+
+RecognizeOptions with(Method method) {
+  RecognizeOptions options;
+  options.method = method;
+  return options;
+}
+
 const Scene& one_object() {
   static const Scene scene = visible_scene(1, 0);
   return scene;
@@ -50,6 +58,7 @@ void expect_consistent(const RecognitionResult& result) {
   EXPECT_LE(s.threshold_matches, s.possible_matches);
   EXPECT_LE(s.active_matches, s.threshold_matches);
   EXPECT_LE(s.verifications, s.hypotheses);
+  EXPECT_LE(s.pose_checks, s.hypotheses);
   EXPECT_GE(s.energy_evaluations, s.verifications);
   EXPECT_LE(static_cast<long>(result.detections.size()), s.verifications);
   const StageTimes& t = result.milliseconds;
@@ -63,11 +72,17 @@ void expect_well_formed(const RecognitionResult& result, const RecognizeOptions&
   for (const Detection& detection : result.detections) {
     EXPECT_TRUE(is_rotation(pose_of(detection).rotation));
     EXPECT_EQ(detection.T_sensor_model[15], 1.0);
-    EXPECT_GE(detection.matched, options.smallest_matched);
-    EXPECT_GE(detection.coherent, options.smallest_coherent);
-    EXPECT_LE(detection.occluding, options.largest_occluding);
-    EXPECT_EQ(detection.score, detection.matched);
-    EXPECT_GT(detection.rank, last_rank) << "detections come in the order of their hypotheses";
+    if (options.method == Method::paper) {
+      EXPECT_GE(detection.matched, options.smallest_matched);
+      EXPECT_GE(detection.coherent, options.smallest_coherent);
+      EXPECT_LE(detection.occluding, options.largest_occluding);
+      EXPECT_EQ(detection.score, detection.matched);
+      EXPECT_GT(detection.rank, last_rank) << "detections come in the order of their hypotheses";
+    } else {
+      EXPECT_GE(detection.score, 0.5);
+      EXPECT_LE(detection.score, 1.0);
+      EXPECT_GE(detection.rank, 1);
+    }
     EXPECT_LE(detection.rank, result.statistics.hypotheses);
     last_rank = detection.rank;
     EXPECT_TRUE(detection.faces.size() == 2 || detection.faces.size() == 3);
@@ -100,27 +115,34 @@ void expect_same(const RecognitionResult& a, const RecognitionResult& b) {
 TEST(Recognize, finds_an_object_with_three_visible_faces_at_its_pose) {
   for (std::uint64_t index = 0; index < 10; ++index) {
     const Scene scene = visible_scene(1, index);
-    const RecognitionResult result = recognize_in(scene.scan.image);
-    EXPECT_TRUE(result.complete);
-    ASSERT_FALSE(result.detections.empty()) << "scene " << index;
-    EXPECT_TRUE(is_right(result.detections[0], scene)) << "scene " << index;
-    expect_consistent(result);
-    expect_well_formed(result, {});
+    for (const Method method : kMethods) {
+      const RecognitionResult result = recognize_in(scene.scan.image, with(method));
+      EXPECT_TRUE(result.complete);
+      ASSERT_FALSE(result.detections.empty()) << "scene " << index;
+      EXPECT_TRUE(is_right(result.detections[0], scene)) << "scene " << index;
+      expect_consistent(result);
+      expect_well_formed(result, with(method));
+    }
   }
 }
 
 TEST(Recognize, finds_both_of_two_objects) {
-  const RecognitionResult result = recognize_in(two_objects().scan.image);
-  ASSERT_EQ(result.detections.size(), 2U);
-  EXPECT_NE(result.detections[0].object, result.detections[1].object);
-  for (const Detection& detection : result.detections)
-    EXPECT_TRUE(is_right(detection, two_objects())) << detection.object;
-  expect_consistent(result);
-  expect_well_formed(result, {});
+  for (const Method method : kMethods) {
+    const RecognitionResult result = recognize_in(two_objects().scan.image, with(method));
+    ASSERT_EQ(result.detections.size(), 2U);
+    EXPECT_NE(result.detections[0].object, result.detections[1].object);
+    for (const Detection& detection : result.detections)
+      EXPECT_TRUE(is_right(detection, two_objects())) << detection.object;
+    expect_consistent(result);
+    expect_well_formed(result, with(method));
+  }
 }
 
 TEST(Recognize, gives_the_same_result_twice) {
-  expect_same(recognize_in(two_objects().scan.image), recognize_in(two_objects().scan.image));
+  for (const Method method : kMethods) {
+    expect_same(recognize_in(two_objects().scan.image, with(method)),
+                recognize_in(two_objects().scan.image, with(method)));
+  }
 }
 
 TEST(Recognize, finds_nothing_in_an_empty_image) {
@@ -136,10 +158,12 @@ TEST(Recognize, finds_nothing_on_an_unknown_plane) {
   const RangeImage wall = test::render({test::facing({0, 0, 900}, 1000, 1000)}, camera());
   const RangeImage card = test::render({test::facing({0, 0, 900}, 90, 55)}, camera());
   for (const RangeImage& image : {wall, card}) {
-    const RecognitionResult result = recognize_in(image);
-    EXPECT_TRUE(result.complete);
-    EXPECT_EQ(result.statistics.regions, 1);
-    EXPECT_TRUE(result.detections.empty());
+    for (const Method method : kMethods) {
+      const RecognitionResult result = recognize_in(image, with(method));
+      EXPECT_TRUE(result.complete);
+      EXPECT_EQ(result.statistics.regions, 1);
+      EXPECT_TRUE(result.detections.empty());
+    }
   }
 }
 
@@ -150,33 +174,38 @@ TEST(Recognize, finds_nothing_in_stray_points) {
     const double depth = random.uniform(600.0, 1200.0);
     image[cell] = (depth * camera().ray(cell / image.columns, cell % image.columns)).cast<float>();
   }
-  EXPECT_TRUE(recognize_in(image).detections.empty());
+  for (const Method method : kMethods) EXPECT_TRUE(recognize_in(image, with(method)).detections.empty());
 }
 
 TEST(Recognize, stops_at_a_deadline_and_says_so) {
-  const auto past = std::chrono::steady_clock::now() - std::chrono::seconds(1);
-  const RecognitionResult late = recognize_in(one_object().scan.image, {}, past);
-  EXPECT_FALSE(late.complete);
-  EXPECT_TRUE(late.detections.empty());
-  EXPECT_EQ(late.statistics.verifications, 0);
-  EXPECT_GT(late.statistics.hypotheses, 0);
-  const auto far = std::chrono::steady_clock::now() + std::chrono::hours(1);
-  expect_same(recognize_in(one_object().scan.image, {}, far), recognize_in(one_object().scan.image));
+  for (const Method method : kMethods) {
+    const auto past = std::chrono::steady_clock::now() - std::chrono::seconds(1);
+    const RecognitionResult late = recognize_in(one_object().scan.image, with(method), past);
+    EXPECT_FALSE(late.complete);
+    EXPECT_TRUE(late.detections.empty());
+    EXPECT_EQ(late.statistics.verifications, 0);
+    EXPECT_GT(late.statistics.hypotheses, 0);
+    const auto far = std::chrono::steady_clock::now() + std::chrono::hours(1);
+    expect_same(recognize_in(one_object().scan.image, with(method), far),
+                recognize_in(one_object().scan.image, with(method)));
+  }
 }
 
 TEST(Recognize, stops_after_the_detections_asked_for) {
-  RecognizeOptions one;
-  one.most_detections = 1;
-  const RecognitionResult all = recognize_in(two_objects().scan.image);
-  const RecognitionResult first = recognize_in(two_objects().scan.image, one);
-  ASSERT_EQ(first.detections.size(), 1U);
-  EXPECT_TRUE(first.complete);
-  EXPECT_EQ(first.detections[0].T_sensor_model, all.detections[0].T_sensor_model);
-  EXPECT_LT(first.statistics.verifications, all.statistics.verifications);
+  for (const Method method : kMethods) {
+    RecognizeOptions one = with(method);
+    one.most_detections = 1;
+    const RecognitionResult all = recognize_in(two_objects().scan.image, with(method));
+    const RecognitionResult first = recognize_in(two_objects().scan.image, one);
+    ASSERT_EQ(first.detections.size(), 1U);
+    EXPECT_TRUE(first.complete);
+    EXPECT_EQ(first.detections[0].T_sensor_model, all.detections[0].T_sensor_model);
+    EXPECT_LT(first.statistics.verifications, all.statistics.verifications);
+  }
 }
 
 TEST(Recognize, stops_after_the_verifications_asked_for) {
-  RecognizeOptions options;
+  RecognizeOptions options = with(Method::paper);
   options.smallest_matched = 1.0;  // nothing is accepted, so that every hypothesis would be verified
   options.smallest_coherent = 1.0;
   options.largest_occluding = 0.0;
@@ -187,10 +216,10 @@ TEST(Recognize, stops_after_the_verifications_asked_for) {
 }
 
 TEST(Recognize, keeps_more_matches_active_without_pruning) {
-  RecognizeOptions unpruned;
+  RecognizeOptions unpruned = with(Method::paper);
   unpruned.pruning = Pruning::none;
   const RecognitionResult all = recognize_in(one_object().scan.image, unpruned);
-  const RecognitionResult pruned = recognize_in(one_object().scan.image);
+  const RecognitionResult pruned = recognize_in(one_object().scan.image, with(Method::paper));
   EXPECT_EQ(all.statistics.threshold_matches, pruned.statistics.threshold_matches);
   EXPECT_EQ(all.statistics.active_matches, all.statistics.threshold_matches);
   EXPECT_GE(all.statistics.active_matches, pruned.statistics.active_matches);
@@ -203,15 +232,17 @@ TEST(Recognize, keeps_more_matches_active_without_pruning) {
 TEST(Recognize, runs_with_every_loss_and_prior_sign) {
   for (const Loss loss : {Loss::lorentzian, Loss::tukey, Loss::huber, Loss::gaussian}) {
     for (const PriorSign sign : {PriorSign::minus_log, PriorSign::plus_log_as_printed}) {
-      RecognizeOptions options;
-      options.loss = loss;
-      options.potentials.prior_sign = sign;
-      const RecognitionResult result = recognize_in(one_object().scan.image, options);
-      expect_consistent(result);
-      expect_well_formed(result, options);
-      if (loss != Loss::gaussian) {
-        ASSERT_FALSE(result.detections.empty());
-        EXPECT_TRUE(is_right(result.detections[0], one_object()));
+      for (const Method method : kMethods) {
+        RecognizeOptions options = with(method);
+        options.loss = loss;
+        options.potentials.prior_sign = sign;
+        const RecognitionResult result = recognize_in(one_object().scan.image, options);
+        expect_consistent(result);
+        expect_well_formed(result, options);
+        if (loss != Loss::gaussian) {
+          ASSERT_FALSE(result.detections.empty());
+          EXPECT_TRUE(is_right(result.detections[0], one_object()));
+        }
       }
     }
   }

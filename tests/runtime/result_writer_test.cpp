@@ -31,7 +31,7 @@ RecognitionResult sample() {
     detection.regions = {2, 5, 6};
     result.detections.push_back(detection);
   }
-  result.statistics = {5, 902, 123, 48, 408, 2, 131};
+  result.statistics = {5, 902, 123, 48, 408, 2, 131, 57};
   result.milliseconds = {4.0, 0.4, 0.3, 2.2, 0.1, 7.25};
   return result;
 }
@@ -51,11 +51,12 @@ TEST(ResultJson, has_the_documented_keys_in_order) {
   EXPECT_EQ(keys(json["detections"][0]),
             (Keys{"object", "pose", "score", "alpha", "beta", "gamma", "rank", "faces", "regions"}));
   EXPECT_EQ(keys(json["statistics"]), (Keys{"regions", "possible_matches", "threshold_matches", "active_matches",
-                                            "hypotheses", "verifications", "energy_evaluations"}));
+                                            "hypotheses", "verifications", "energy_evaluations", "pose_checks"}));
   EXPECT_EQ(keys(json["milliseconds"]),
             (Keys{"read", "extract", "field", "hypotheses", "localize", "verify", "total"}));
   EXPECT_EQ(json["milliseconds"]["total"], 8.75);  // reading included
   EXPECT_EQ(json["statistics"]["possible_matches"], 902);
+  EXPECT_EQ(json["statistics"]["pose_checks"], 57);
   EXPECT_EQ(json["detections"][1]["object"], "tee");
   EXPECT_EQ(json["detections"][1]["faces"], (std::vector<int>{3, 7, 8}));
 }

@@ -1,0 +1,259 @@
+#include "runtime/pose_evidence.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "tests/images.h"
+#include "tests/runtime/box_scene.h"
+
+namespace foresight {
+namespace {
+
+using Eigen::Vector3d;
+
+// A scan with what refers to it kept alive.
+struct Seen {
+  SensorModel sensor;
+  RangeImage image;
+  std::vector<DescribedRegion> regions;
+
+  explicit Seen(RangeImage seen) : image(std::move(seen)), regions(extract_regions(image, sensor.camera, {})) {}
+
+  [[nodiscard]] LabelledScan labelled() const { return label_scan(image, sensor.camera, sensor, regions); }
+};
+
+Seen box_seen(const std::vector<test::Screen>& screens = {}) {
+  return Seen(test::box_image(test::box_pose(), PinholeCamera{}, screens));
+}
+
+PoseEvidence box_evidence(const Seen& seen, const Pose& pose = test::box_pose()) {
+  return gather_evidence(test::box_model(), pose, seen.labelled());
+}
+
+// One side of a thin plate 60 x 40 mm, facing the camera at 900 mm.
+CompiledModel plate() {
+  CompiledModel model;
+  model.vertices = {{-30, -20, 900}, {-30, 20, 900}, {30, 20, 900}, {30, -20, 900}};
+  model.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return model;
+}
+
+void expect_counts_add_up(const PoseEvidence& e) {
+  EXPECT_EQ(e.explained + e.tilted + e.behind + e.front + e.missing, e.drawn);
+  EXPECT_LE(e.owned, e.explained + 1e-9);
+  EXPECT_LE(e.pieces_found, e.pieces);
+  for (const int k : {kOwnedShare, kContradictedShare, kMissingShare, kHiddenShare, kFoundPieces}) {
+    const double share = evidence_features(e)[static_cast<std::size_t>(k)];
+    EXPECT_TRUE(share >= 0.0 && share <= 1.0 + 1e-9) << k << ": " << share;
+  }
+}
+
+TEST(LabelScan, numbers_cells_by_their_region) {
+  const Seen seen = box_seen();
+  const LabelledScan scan = seen.labelled();
+  ASSERT_EQ(seen.regions.size(), 3U);
+  EXPECT_EQ(scan.taken, std::vector<bool>(3, false));
+  for (std::size_t r = 0; r < 3; ++r) {
+    EXPECT_EQ(static_cast<std::size_t>(std::count(scan.labels.begin(), scan.labels.end(), static_cast<int>(r) + 1)),
+              seen.regions[r].region.cells.size());
+  }
+}
+
+TEST(PoseEvidence, the_true_pose_is_explained) {
+  const Seen seen = box_seen();
+  const PoseEvidence e = box_evidence(seen);
+  EXPECT_GT(e.drawn, 500);
+  EXPECT_EQ(e.explained, e.drawn);
+  EXPECT_GT(e.owned, 0.97 * e.explained);
+  EXPECT_EQ(e.pieces, 6);  // two triangles of each of three faces
+  EXPECT_EQ(e.pieces_found, 6);
+  for (std::size_t r = 0; r < seen.regions.size(); ++r) {
+    EXPECT_GT(e.explained_of_region[r], 0.95 * static_cast<double>(seen.regions[r].region.cells.size()));
+  }
+  expect_counts_add_up(e);
+}
+
+TEST(PoseEvidence, outlines_half_a_cell_off_do_not_count) {
+  const Seen seen = box_seen();
+  for (const Vector3d& move : {Vector3d(0.5, 0, 0), Vector3d(-0.5, 0, 0), Vector3d(0, 0.5, 0), Vector3d(0, -0.5, 0)}) {
+    const PoseEvidence e = box_evidence(seen, test::moved(test::box_pose(), move, {0, 0, 0}));
+    EXPECT_GT(e.drawn, 500);
+    EXPECT_EQ(e.missing, 0) << move.transpose();
+    EXPECT_EQ(e.behind + e.front, 0) << move.transpose();
+    EXPECT_LT(e.tilted, 0.03 * e.drawn) << move.transpose();  // creases do: the region beyond has another normal
+  }
+}
+
+TEST(PoseEvidence, an_absent_object_is_missing_before_nothing) {
+  const PoseEvidence e = box_evidence(Seen(RangeImage(240, 256)));
+  EXPECT_GT(e.drawn, 500);
+  EXPECT_EQ(e.missing, e.drawn);
+  EXPECT_EQ(e.pieces, 0);
+  expect_counts_add_up(e);
+}
+
+TEST(PoseEvidence, an_absent_object_is_seen_through_before_a_wall) {
+  const PoseEvidence e = box_evidence(Seen(test::render({test::facing({0, 0, 1200}, 1000, 1000)}, PinholeCamera{})));
+  EXPECT_EQ(e.behind, e.drawn);
+  EXPECT_EQ(e.pieces, 6);
+  EXPECT_EQ(e.pieces_found, 0);
+  EXPECT_DOUBLE_EQ(evidence_features(e)[kContradictedShare], 1.0);
+  expect_counts_add_up(e);
+}
+
+TEST(PoseEvidence, what_hides_the_object_does_not_contradict_it) {
+  const PoseEvidence alone = box_evidence(box_seen());
+  const PoseEvidence hidden = box_evidence(box_seen({{700.0, 0, 120}}));
+  EXPECT_GT(hidden.front, 0.2 * hidden.drawn);
+  EXPECT_EQ(hidden.behind, 0);
+  EXPECT_EQ(hidden.tilted, 0);
+  EXPECT_EQ(hidden.missing, 0);
+  EXPECT_EQ(hidden.drawn, alone.drawn);
+  EXPECT_LT(hidden.explained, alone.explained);
+  EXPECT_EQ(evidence_features(hidden)[kContradictedShare], 0.0);
+  EXPECT_EQ(hidden.pieces_found, hidden.pieces);
+  expect_counts_add_up(hidden);
+}
+
+TEST(PoseEvidence, regions_that_run_on_beyond_a_face_are_not_owned) {
+  double last = 2.0;
+  for (const double growth : {1.0, 1.5, 3.0}) {
+    const Seen seen(test::render({test::facing({0, 0, 900}, 60 * growth, 40 * growth)}, PinholeCamera{}));
+    ASSERT_EQ(seen.regions.size(), 1U);
+    const PoseEvidence e = gather_evidence(plate(), {}, seen.labelled());
+    EXPECT_EQ(e.explained, e.drawn);
+    const double owned = e.owned / e.explained;
+    EXPECT_NEAR(owned, 1.0 / (growth * growth), 0.06);
+    EXPECT_LT(owned, last);
+    last = owned;
+    expect_counts_add_up(e);
+  }
+}
+
+TEST(PoseEvidence, a_region_of_another_object_contradicts) {
+  const Seen seen = box_seen();
+  LabelledScan scan = seen.labelled();
+  const PoseEvidence free = gather_evidence(test::box_model(), test::box_pose(), scan);
+  scan.taken.assign(3, true);
+  const PoseEvidence taken = gather_evidence(test::box_model(), test::box_pose(), scan);
+  EXPECT_EQ(taken.drawn, free.drawn);
+  EXPECT_GT(taken.tilted, 0.9 * taken.drawn);
+  EXPECT_EQ(std::accumulate(taken.explained_of_region.begin(), taken.explained_of_region.end(), 0), 0);
+  EXPECT_EQ(taken.pieces_found, 0);
+  scan.taken = {true, false, false};
+  EXPECT_LT(gather_evidence(test::box_model(), test::box_pose(), scan).tilted, taken.tilted);
+  expect_counts_add_up(taken);
+}
+
+// A wall that cuts the plate at an angle has data on it, but no surface like it.
+TEST(PoseEvidence, a_region_with_another_normal_contradicts) {
+  const auto cut_at = [](double angle) {
+    const Pose turn{rotation_from_vector({0, angle, 0}), {0, 0, 900}};
+    const Seen seen(test::render({test::moved(test::facing({0, 0, 0}, 200, 200), turn)}, PinholeCamera{}));
+    return gather_evidence(plate(), {}, seen.labelled());
+  };
+  const PoseEvidence steep = cut_at(0.7);  // beyond 30 degrees
+  EXPECT_GT(steep.tilted, 100);
+  EXPECT_EQ(steep.explained, 0);
+  EXPECT_GT(steep.front, 100);
+  EXPECT_GT(steep.behind, 100);
+  const PoseEvidence slight = cut_at(0.1);
+  EXPECT_EQ(slight.tilted, 0);
+  EXPECT_EQ(slight.explained, slight.drawn);
+  expect_counts_add_up(steep);
+}
+
+// Along the ray, a step across a slanting surface is longer.
+TEST(PoseEvidence, data_agree_within_the_distance_across_the_surface) {
+  for (const double angle : {0.0, 0.5, 1.0}) {
+    const Eigen::Matrix3d rotation = rotation_from_vector({0, angle, 0});
+    const Vector3d centre(0, 0, 900);
+    const Pose pose{rotation, centre - rotation * centre};
+    for (const double off : {-4.5, -3.5, 3.5, 4.5}) {
+      const Pose wall{rotation, centre + off * rotation.col(2)};
+      const Seen seen(test::render({test::moved(test::facing({0, 0, 0}, 200, 200), wall)}, PinholeCamera{}));
+      const PoseEvidence e = gather_evidence(plate(), pose, seen.labelled());
+      ASSERT_GT(e.drawn, 500);
+      EXPECT_EQ(e.explained, std::abs(off) < 4.0 ? e.drawn : 0);
+      EXPECT_EQ(e.behind, off > 4.0 ? e.drawn : 0);
+      EXPECT_EQ(e.front, off < -4.0 ? e.drawn : 0);
+      EvidenceOptions wider;
+      wider.distance = 5.0;
+      EXPECT_EQ(gather_evidence(plate(), pose, seen.labelled(), wider).explained, e.drawn);
+    }
+  }
+}
+
+TEST(PoseEvidence, speaks_against_displaced_poses_more_the_farther_they_are) {
+  const Seen seen = box_seen();
+  double last = box_evidence(seen).owned;
+  for (const double distance : {4.0, 8.0, 32.0}) {
+    const PoseEvidence e = box_evidence(seen, test::moved(test::box_pose(), {0.0, distance, 0.0}, {0, 0, 0}));
+    EXPECT_LT(e.owned, last) << distance;
+    last = e.owned;
+    expect_counts_add_up(e);
+  }
+  EXPECT_LT(last, 0.2 * box_evidence(seen).owned);
+}
+
+TEST(PoseEvidence, asks_nothing_where_the_sensor_gives_nothing) {
+  Seen seen = box_seen();
+  const PoseEvidence all = box_evidence(seen);
+  seen.sensor.largest_incidence = 0.8;
+  const PoseEvidence steep_left_out = box_evidence(seen);
+  EXPECT_LT(steep_left_out.drawn, all.drawn);
+  EXPECT_GT(steep_left_out.drawn, 0);
+  EXPECT_EQ(steep_left_out.explained, steep_left_out.drawn);
+}
+
+TEST(PoseEvidence, is_nothing_outside_the_image) {
+  const Seen seen = box_seen();
+  for (const Vector3d& move : {Vector3d(5000, 0, 0), Vector3d(0, 0, -2000)}) {
+    const PoseEvidence e = box_evidence(seen, test::moved(test::box_pose(), move, {0, 0, 0}));
+    EXPECT_EQ(e.drawn, 0);
+    EXPECT_EQ(e.explained_of_region, std::vector<int>(3, 0));
+    for (const double feature : evidence_features(e)) EXPECT_EQ(feature, 0.0);
+  }
+}
+
+TEST(ProbabilityRight, is_a_half_for_a_model_that_knows_nothing) {
+  EXPECT_DOUBLE_EQ(probability_right({}, box_evidence(box_seen())), 0.5);
+}
+
+TEST(ProbabilityRight, rises_with_each_weight_whose_evidence_is_there) {
+  PoseEvidence e;
+  e.drawn = 100;
+  e.explained = 40;
+  e.tilted = e.behind = 10;
+  e.front = e.missing = 20;
+  e.owned = 30.0;
+  e.pieces = 4;
+  e.pieces_found = 3;
+  for (std::size_t k = 0; k < kEvidenceFeatureCount; ++k) {
+    double last = 0.0;
+    for (const double weight : {-30.0, -1.0, 0.0, 2.0, 30.0}) {
+      AcceptanceModel model;
+      model.weights[k] = weight;
+      const double probability = probability_right(model, e);
+      EXPECT_GT(probability, last) << k;
+      EXPECT_LT(probability, 1.0) << k;
+      last = probability;
+    }
+  }
+}
+
+TEST(ProbabilityRight, stays_between_zero_and_one_for_extreme_models) {
+  const PoseEvidence e = box_evidence(box_seen());
+  for (const double bias : {-1e6, 1e6}) {
+    AcceptanceModel model;
+    model.bias = bias;
+    EXPECT_EQ(probability_right(model, e), bias > 0.0 ? 1.0 : 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace foresight
