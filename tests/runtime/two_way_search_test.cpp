@@ -131,8 +131,9 @@ Database judged_by(const AcceptanceModel& judge) {
   return Database(std::move(content));
 }
 
-RecognitionResult recognize_by(const AcceptanceModel& judge, const RangeImage& image) {
-  return recognize(image, camera(), judged_by(judge), {});
+RecognitionResult recognize_by(const AcceptanceModel& judge, const RangeImage& image,
+                               const RecognizeOptions& options = {}) {
+  return recognize(image, camera(), judged_by(judge), options);
 }
 
 // Judges that look at nothing. Half of a start must be explained, to save time.
@@ -149,11 +150,21 @@ TEST(TwoWaySearch, finds_nothing_that_its_acceptance_models_hold_improbable) {
 
 TEST(TwoWaySearch, no_two_detections_rest_on_one_region) {
   for (const AcceptanceModel& judge : {compiled_objects().models()[0].acceptance, hesitating(), trusting()}) {
-    std::set<int> regions;
-    for (const Detection& detection : recognize_by(judge, visible_scene(2, 0).scan.image).detections) {
-      for (const int region : detection.regions) EXPECT_TRUE(regions.insert(region).second) << region;
+    for (std::uint64_t index = 0; index < 3; ++index) {
+      std::set<int> regions;
+      for (const Detection& detection : recognize_by(judge, visible_scene(2, index).scan.image).detections) {
+        for (const int region : detection.regions) EXPECT_TRUE(regions.insert(region).second) << region;
+      }
     }
   }
+}
+
+TEST(TwoWaySearch, stops_after_the_detections_asked_for_among_those_that_waited) {
+  const RangeImage image = visible_scene(2, 0).scan.image;
+  RecognizeOptions one;
+  one.most_detections = 1;
+  EXPECT_GT(recognize_by(hesitating(), image).detections.size(), 1U);
+  EXPECT_EQ(recognize_by(hesitating(), image, one).detections.size(), 1U);
 }
 
 // A judge of contradiction alone, never sure: all poses wait until all are known.
