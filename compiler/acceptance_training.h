@@ -10,7 +10,7 @@
 namespace foresight {
 
 struct AcceptanceTrainingOptions {
-  int scenes = 24;           // simulated. Limit: >= 8.
+  int scenes = 24;           // simulated. Limit: >= 3, one of each kind.
   int most_hypotheses = 40;  // looked at in a scene, most likely first. Limit: >= 1.
   int most_refined = 4;      // of them. Limit: >= 1.
   std::uint64_t seed = 1;

@@ -13,9 +13,6 @@ void add_scan_options(CLI::App& command, ScanSource& source) {
 }
 
 void add_method_options(CLI::App& command, RecognizeOptions& options) {
-  static const std::map<std::string, Method> methods = {{"two-way", Method::two_way}, {"paper", Method::paper}};
-  command.add_option("--method", options.method, "Judge poses by evidence for and against (two-way, the default), or by alpha, beta, gamma (paper)")
-      ->transform(CLI::CheckedTransformer(methods, CLI::ignore_case).description(""));
   static const std::map<std::string, Loss> losses = {
       {"lorentzian", Loss::lorentzian}, {"tukey", Loss::tukey}, {"huber", Loss::huber}, {"gaussian", Loss::gaussian}};
   command.add_option("--loss", options.loss, "Error distribution of localization: lorentzian, tukey, huber, gaussian")
@@ -41,6 +38,9 @@ CLI::App* add_recognize(CLI::App& app, RecognizeCommand& c) {
       ->transform(CLI::CheckedTransformer(signs, CLI::ignore_case).description(""));
   command->add_option("--pruning", c.options.pruning, "hcf (highest confidence first) or none")
       ->transform(CLI::CheckedTransformer(prunings, CLI::ignore_case).description(""));
+  static const std::map<std::string, Method> methods = {{"two-way", Method::two_way}, {"paper", Method::paper}};
+  command->add_option("--method", c.options.method, "Judge poses by evidence for and against (two-way, the default), or by alpha, beta, gamma (paper)")
+      ->transform(CLI::CheckedTransformer(methods, CLI::ignore_case).description(""));
   add_method_options(*command, c.options);
   add_progress_option(*command, c.progress);
   return command;

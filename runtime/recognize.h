@@ -38,6 +38,7 @@ struct RefinedPose {
 // A refined pose as a detection: pose, fractions and score; no rank, faces or regions yet.
 [[nodiscard]] Detection to_detection(const CompiledModel& model, const RefinedPose& refined);
 
+// Judged by alpha, beta and gamma, whatever the method of the options: a pose that is given has no rivals.
 [[nodiscard]] RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& camera, const CompiledModel& model,
                                             const Pose& T_sensor_model, const RecognizeOptions& options);
 
