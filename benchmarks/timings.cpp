@@ -10,9 +10,11 @@
 #include "benchmarks/experiment.h"
 #include "benchmarks/series.h"
 #include "common/program.h"
+#include "compiler/database_writer.h"
 #include "compiler/scene_generator.h"
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
+#include "runtime/pose_evidence.h"
 #include "runtime/pose_from_matches.h"
 #include "runtime/recognize.h"
 
@@ -169,9 +171,30 @@ void time_data_tree(benchmark::State& state, const Case& scan) {
   count(state, "points", count_valid(scan.image));
 }
 
+// What the two-way method looks at before it localizes: the object drawn at a hypothesis's pose.
+void time_pose_check(benchmark::State& state, const Case& scan) {
+  const LabelledScan labelled = label_scan(scan.image, scan.camera(), scan.database.content().sensor, scan.regions);
+  double cells = 0.0;
+  time_trials(state, scan,
+              [&](const Trial& trial) { cells += gather_evidence(*trial.model, trial.start, labelled).drawn; });
+  count_average(state, "cells", cells);
+}
+
+// Decoding and checking a database whose bytes are in memory.
+void time_load(benchmark::State& state, const Case& scan) {
+  const std::string bytes = encode_database(scan.database.content());
+  for (auto step : state) {
+    (void)step;
+    benchmark::DoNotOptimize(Database(decode_database(bytes, "memory")));
+  }
+  count(state, "bytes", static_cast<double>(bytes.size()));
+  count(state, "models", static_cast<double>(scan.database.models().size()));
+}
+
 // In clutter the hypotheses that nothing accepts take minutes: a fixed number of verifications makes times compare.
-void time_recognize(benchmark::State& state, const Case& scan) {
+void time_recognition(benchmark::State& state, const Case& scan, Method method) {
   RecognizeOptions options;
+  options.method = method;
   options.most_verifications = 10;
   Statistics statistics;
   for (auto step : state) {
@@ -183,6 +206,9 @@ void time_recognize(benchmark::State& state, const Case& scan) {
   count(state, "verifications", static_cast<double>(statistics.verifications));
   count(state, "evaluations", static_cast<double>(statistics.energy_evaluations));
 }
+
+void time_recognize(benchmark::State& state, const Case& scan) { time_recognition(state, scan, Method::two_way); }
+void time_recognize_paper(benchmark::State& state, const Case& scan) { time_recognition(state, scan, Method::paper); }
 
 std::vector<Case> fixed_cases(const std::vector<CadModel>& models, const SensorModel& sensor,
                               const Database& database) {
@@ -204,11 +230,14 @@ struct Stage {
 void register_all(const std::vector<Case>& cases) {
   const std::vector<Stage> stages = {{"verification", time_verification, true},
                                      {"recognize", time_recognize},
+                                     {"recognize_paper", time_recognize_paper},
+                                     {"load", time_load},
                                      {"extract", time_extract},
                                      {"field", time_field},
                                      {"hcf", time_highest_confidence_first},
                                      {"cliques", time_cliques},
                                      {"data_tree", time_data_tree},
+                                     {"pose_check", time_pose_check, true},
                                      {"localize", time_localize, true},
                                      {"verify", time_verify, true}};
   for (const Stage& stage : stages) {
