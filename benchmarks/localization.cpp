@@ -150,6 +150,7 @@ void write_convergence_plot(const ExperimentOptions& options, const TrialsByLoss
   constexpr double kBinWidth = 8.0;   // Unit: mm.
   constexpr std::size_t kFewest = 5;  // trials that make a point
   Plot right{"Convergence of localization", "largest surface distance of the start, mm", "right pose, %"};
+  right.percent_y = true;
   Plot cost{"Cost of localization", right.x_label, "energy evaluations"};
   for (std::size_t l = 0; l < kLosses.size(); ++l) {
     std::map<int, std::vector<const Trial*>> bins;

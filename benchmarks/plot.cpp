@@ -102,6 +102,7 @@ std::string plot_commands(const Plot& plot, std::size_t index) {
   text += plot.logarithmic_x ? "set logscale x\n" : "unset logscale x\n";
   text += plot.logarithmic_y ? "set logscale y\n" : "unset logscale y\n";
   text += bars ? "set boxwidth 0.8 relative\nset yrange [0:*]\n" : "set yrange [*:*]\n";
+  if (plot.percent_y) text += "set yrange [0:100]\n";
   if (plot.x_names.empty()) {
     text += "set xtics autofreq norotate\nset xrange [*:*]\n";
   } else {

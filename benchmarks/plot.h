@@ -25,6 +25,7 @@ struct Plot {
   bool logarithmic_y = false;
   std::vector<std::string> x_names{};  // where not empty, names of x = 0, 1, 2, ... in place of numbers
   std::vector<Curve> curves{};
+  bool percent_y = false;  // the y axis shows 0 to 100, whatever the values
 };
 
 // Several plots side by side in one picture, `columns` in a row. Throws InputError naming the file when it cannot be

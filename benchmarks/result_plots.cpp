@@ -22,6 +22,7 @@ Plot right_pose_plot(const std::string& title, const std::vector<SummaryRow>& ro
   Plot plot;
   plot.title = title;
   plot.y_label = "right pose, %";
+  plot.percent_y = true;
   std::vector<std::string> methods;
   for (const SummaryRow& row : rows) place_of(methods, row.method);
   plot.curves.resize(methods.size());
