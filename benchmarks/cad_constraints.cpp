@@ -1,59 +1,13 @@
 #include "benchmarks/cad_constraints.h"
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
-#include <set>
 
-#include "common/relation_attributes.h"
+#include "benchmarks/cad_attributes.h"
 
 namespace foresight {
 namespace {
 
-using Eigen::Vector3d;
-
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-std::vector<Vector3d> corners_of(const CadModel& model, const CadFace& face) {
-  std::set<int> used;
-  for (const int t : face.triangles) used.insert(model.triangles[at(t)].begin(), model.triangles[at(t)].end());
-  std::vector<Vector3d> corners;
-  for (const int v : used) corners.push_back(model.vertices[at(v)]);
-  return corners;
-}
-
-double largest_distance(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
-  double largest = 0.0;
-  for (const Vector3d& p : a) {
-    for (const Vector3d& q : b) largest = std::max(largest, (p - q).norm());
-  }
-  return largest;
-}
-
-// Covariance of the area of the face about its centroid. A triangle has A/12 (sum of its corners' products + 9 times
-// its centre's).
-AttributeVector attributes_of(const CadModel& model, const CadFace& face, const std::vector<Vector3d>& corners) {
-  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-  double area = 0.0;
-  for (const int t : face.triangles) {
-    std::array<Vector3d, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) p[k] = model.vertices[at(model.triangles[at(t)][k])] - face.centroid;
-    const double of_triangle = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
-    const Vector3d sum = p[0] + p[1] + p[2];
-    Eigen::Matrix3d products = sum * sum.transpose();
-    for (const Vector3d& corner : p) products += corner * corner.transpose();
-    moment += of_triangle / 12.0 * products;
-    area += of_triangle;
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moment / area, Eigen::EigenvaluesOnly);
-  const Vector3d values = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // ascending; the first is along the normal
-  AttributeVector attributes{};
-  attributes[kArea] = area;
-  attributes[kMaxSecondMoment] = values[2];
-  attributes[kMinSecondMoment] = values[1];
-  attributes[kMaxDiameter] = largest_distance(corners, corners);
-  return attributes;
-}
 
 bool within(double value, double of_face, const CadBounds& bounds) {
   return value >= bounds.lower * of_face && value <= bounds.upper * of_face;
@@ -67,9 +21,9 @@ bool may_be(const AttributeVector& region, const AttributeVector& face, const Ca
 }
 
 bool may_be_pair(const RelationVector& relation, const CadGeometry& model, int a, int b, const CadBounds& bounds) {
-  const double angle = std::acos(std::clamp(model.normals[at(a)].dot(model.normals[at(b)]), -1.0, 1.0));
-  return std::abs(relation[kOrientation] - angle) <= bounds.orientation &&
-         within(relation[kMaxDistance], model.distances[at(a)][at(b)], bounds);
+  const RelationVector& of_faces = model.relations[at(a)][at(b)];
+  return std::abs(relation[kOrientation] - of_faces[kOrientation]) <= bounds.orientation &&
+         within(relation[kMaxDistance], of_faces[kMaxDistance], bounds);
 }
 
 void link(HypothesisField& field, const std::vector<int>& of_a, const std::vector<int>& of_b,
@@ -94,15 +48,11 @@ void link(HypothesisField& field, const std::vector<int>& of_a, const std::vecto
 
 CadGeometry cad_geometry(const CadModel& model) {
   CadGeometry geometry;
-  std::vector<std::vector<Vector3d>> corners;
-  for (const CadFace& face : model.faces) {
-    corners.push_back(corners_of(model, face));
-    geometry.faces.push_back(attributes_of(model, face, corners.back()));
-    geometry.normals.push_back(face.normal);
-  }
-  for (const auto& a : corners) {
-    std::vector<double>& row = geometry.distances.emplace_back();
-    for (const auto& b : corners) row.push_back(largest_distance(a, b));
+  const int faces = static_cast<int>(model.faces.size());
+  for (int a = 0; a < faces; ++a) {
+    geometry.faces.push_back(cad_attributes(model, a));
+    std::vector<RelationVector>& row = geometry.relations.emplace_back();
+    for (int b = 0; b < faces; ++b) row.push_back(cad_relations(model, a, b));
   }
   return geometry;
 }

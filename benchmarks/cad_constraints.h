@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "common/relation_attributes.h"
 #include "compiler/cad_model.h"
 #include "runtime/hypothesis_field.h"
 
@@ -13,8 +14,7 @@ namespace foresight {
 // Attributes of the whole faces of one solid, as an undisturbed view of each would give them.
 struct CadGeometry {
   std::vector<AttributeVector> faces;
-  std::vector<Eigen::Vector3d> normals;
-  std::vector<std::vector<double>> distances;  // [face][face]: largest distance between their points. Unit: mm.
+  std::vector<std::vector<RelationVector>> relations;  // [face][face]
 };
 [[nodiscard]] CadGeometry cad_geometry(const CadModel& model);
 

@@ -26,8 +26,8 @@ TEST(CadGeometry, of_a_box_has_the_closed_forms) {
   EXPECT_NEAR(bottom[kMinSecondMoment], 40.0 / std::sqrt(12.0), 1e-9);
   EXPECT_NEAR(bottom[kMaxDiameter], std::hypot(40.0, 60.0), 1e-9);
   const double diagonal = std::sqrt(40.0 * 40.0 + 60.0 * 60.0 + 100.0 * 100.0);
-  EXPECT_NEAR(geometry.distances[0][1], diagonal, 1e-9);
-  EXPECT_NEAR(geometry.distances[1][0], diagonal, 1e-9);
+  EXPECT_NEAR(geometry.relations[0][1][kMaxDistance], diagonal, 1e-9);
+  EXPECT_NEAR(geometry.relations[1][0][kMaxDistance], diagonal, 1e-9);
 }
 
 TEST(CadField, matches_each_region_with_the_faces_of_its_size) {
