@@ -1,9 +1,10 @@
 // Other people's recognizers, each built into a full chain as a competent user would: from CAD models and a range image
 // to objects with poses.
 //
-//   pcl-ppf     PCL: PPFEstimation, PPFHashMapSearch, PPFRegistration (Drost et al., CVPR 2010), then ICP, point to
-//   plane pcl-fpfh    PCL: FPFHEstimation, SampleConsensusPrerejective (Buch et al., ICRA 2013), then ICP, point to
-//   plane opencv-ppf  OpenCV: surface_matching's PPF3DDetector, then its ICP
+// - pcl-ppf: PCL's PPFEstimation, PPFHashMapSearch and PPFRegistration (Drost et al., CVPR 2010), then ICP, point to
+//   plane;
+// - pcl-fpfh: PCL's FPFHEstimation and SampleConsensusPrerejective (Buch et al., ICRA 2013), then ICP, point to plane;
+// - opencv-ppf: OpenCV's surface_matching, PPF3DDetector, then its ICP.
 //
 // Help that all of them get from here, because the libraries leave it to their users:
 //   - the model: points spread evenly over the CAD surface, with the exact outward normals;
