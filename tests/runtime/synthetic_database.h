@@ -46,7 +46,7 @@ inline CompiledModel synthetic_model(const std::string& name, double scale) {
     pair.densities[kMaxDistance] = synthetic_density(0.0, scale / 24.0, 3 * second, 0.03F);
     model.pairs.push_back(pair);
   }
-  model.acceptance = {{4.5, -3.25, -1.75, -0.5 * scale, 2.125, 1.0625}, -0.375, 0.4, 77};
+  model.acceptance = {{4.5, -3.25, -1.75, -0.5 * scale, 2.125}, -0.375, 0.4, 77};
   const auto length = static_cast<float>(scale);
   model.surface.spacing = 5.5;
   model.surface.points = {{{0.0F, 0.1F, length}, {0.0F, 0.0F, 1.0F}, {0}, {1, 2}},
