@@ -86,7 +86,7 @@ struct RecognizeOptions {
   Potentials potentials;
   Pruning pruning = Pruning::highest_confidence_first;
   Loss loss = Loss::lorentzian;
-  double smallest_matched = 0.5;        // alpha, Section V.C. Limit: 0 to 1.
+  double smallest_matched = 0.5;        // alpha, Section V.C; decides with Method::paper only, as the next two. Limit: 0 to 1.
   double smallest_coherent = 0.4;       // beta, Section V.C. Limit: 0 to 1.
   double largest_occluding = 0.175;     // gamma, Section V.C. Limit: 0 to 1.
   int most_detections = 0;              // stop after this many, 0 = no limit. Limit: >= 0.

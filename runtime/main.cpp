@@ -17,9 +17,9 @@ void add_method_options(CLI::App& command, RecognizeOptions& options) {
       {"lorentzian", Loss::lorentzian}, {"tukey", Loss::tukey}, {"huber", Loss::huber}, {"gaussian", Loss::gaussian}};
   command.add_option("--loss", options.loss, "Error distribution of localization: lorentzian, tukey, huber, gaussian")
       ->transform(CLI::CheckedTransformer(losses, CLI::ignore_case).description(""));
-  command.add_option("--min-matched", options.smallest_matched, "Accept from this matched fraction (alpha)")->check(number_between(0.0, 1.0))->capture_default_str();
-  command.add_option("--min-coherent", options.smallest_coherent, "Accept from this coherent fraction (beta)")->check(number_between(0.0, 1.0))->capture_default_str();
-  command.add_option("--max-occluding", options.largest_occluding, "Accept up to this occluding fraction (gamma)")->check(number_between(0.0, 1.0))->capture_default_str();
+  command.add_option("--min-matched", options.smallest_matched, "With --method paper and in localize: accept from this matched fraction (alpha)")->check(number_between(0.0, 1.0))->capture_default_str();
+  command.add_option("--min-coherent", options.smallest_coherent, "With --method paper and in localize: accept from this coherent fraction (beta)")->check(number_between(0.0, 1.0))->capture_default_str();
+  command.add_option("--max-occluding", options.largest_occluding, "With --method paper and in localize: accept up to this occluding fraction (gamma)")->check(number_between(0.0, 1.0))->capture_default_str();
 }
 
 CLI::App* add_recognize(CLI::App& app, RecognizeCommand& c) {
