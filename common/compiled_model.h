@@ -64,9 +64,9 @@ inline constexpr int kEvidenceFeatureCount = 5;
 struct AcceptanceModel {
   std::array<double, kEvidenceFeatureCount> weights{};
   double bias = 0.0;
-  // Share of explained cells at the pose of a hypothesis, before localization, below which no right pose came of it.
-  // Limit: 0 to 1.
-  double least_overlap = 0.0;
+  // Of start poses, before localization: below these none came to a right pose. Limit: 0 to 1.
+  double least_quality = 0.0;      // PoseCheck::quality
+  double least_probability = 0.0;  // by this model, of the evidence there
   int samples = 0;  // simulated poses it was fitted to; 0: none, a database without acceptance models
 };
 
@@ -85,6 +85,7 @@ struct CompiledModel {
   AcceptanceModel acceptance;
   std::vector<Eigen::Vector3f> vertices;                // of the CAD mesh, for overlays and for pose distances. Unit: mm.
   std::vector<std::array<int, 3>> triangles;            // indices into vertices
+  std::vector<int> triangle_faces;                      // face of each triangle; empty in databases of earlier compilers
 };
 
 // A database is compiled models that share a sensor and extraction settings.

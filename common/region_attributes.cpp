@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "common/region_boundary.h"
+
 namespace foresight {
 namespace {
 
@@ -118,8 +120,13 @@ DescribedRegion describe(Region region, const RangeImage& image, const PinholeCa
 
 std::vector<DescribedRegion> extract_regions(const RangeImage& image, const PinholeCamera& camera,
                                              const SegmentationOptions& options) {
+  std::vector<Region> regions = segment(image, options);
+  const std::vector<double> cut = cut_shares(regions, image, camera);
   std::vector<DescribedRegion> described;
-  for (Region& region : segment(image, options)) described.push_back(describe(std::move(region), image, camera));
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    described.push_back(describe(std::move(regions[r]), image, camera));
+    described.back().cut_share = cut[r];
+  }
   return described;
 }
 

@@ -24,6 +24,7 @@ struct DescribedRegion {
   AttributeVector attributes{};
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // area-weighted, on the plane. Unit: mm.
   Eigen::Vector3d major_axis = Eigen::Vector3d::Zero();  // unit, direction of the larger second moment
+  double cut_share = 0.0;  // of its boundary at which its face may go on unseen (region_boundary.h)
   std::vector<Eigen::Vector3d> hull;                   // convex hull of the patch on its plane, counter-clockwise seen along -normal. Unit: mm.
 };
 

@@ -9,11 +9,11 @@
 
 #include "compiler/logistic_regression.h"
 #include "compiler/scene_generator.h"
-#include "runtime/highest_confidence_first.h"
 #include "runtime/pose_evidence.h"
 #include "runtime/recognize.h"
 #include "runtime/rendering.h"
 #include "runtime/scan_context.h"
+#include "runtime/start_search.h"
 #include "runtime/two_way_search.h"
 
 namespace foresight {
@@ -26,7 +26,7 @@ constexpr double kWrongShare = 0.8;    // fewer show the same: wrong; between th
 constexpr double kLeastVisible = 0.3;  // an object hidden by more teaches nothing about right poses
 // Keeps the weights finite. With 0.1 the right poses of 80 clean scans all scored 0.73 to 0.90, too little.
 constexpr double kRidge = 0.003;
-constexpr double kOverlapReserve = 0.4;  // of the least overlap that came to a right pose: few scenes were looked at
+constexpr double kReserve = 0.4;  // of the least quality, and odds, that came to a right pose: few scenes were looked at
 
 using Features = std::array<double, kEvidenceFeatureCount>;
 
@@ -34,7 +34,9 @@ using Features = std::array<double, kEvidenceFeatureCount>;
 struct Lessons {
   std::vector<Features> right;
   std::vector<Features> wrong;
-  std::vector<double> overlaps;  // of hypotheses that came to a right pose
+  // Of starts that came to a right pose.
+  std::vector<double> qualities;
+  std::vector<Features> starts;
 };
 
 CadModel linearly_mapped(const CadModel& cad, const Eigen::Matrix3d& map) {
@@ -129,13 +131,9 @@ CompiledModel drawable(const CadModel& cad) {
 class SceneTeacher {
  public:
   SceneTeacher(const Database& database, const std::vector<CadModel>& cast, const Scene& scene,
-               const std::vector<DescribedRegion>& regions, const HypothesisField& field)
+               const std::vector<DescribedRegion>& regions)
       : model_(database.models().front()),
-        context_{scene.scan.image,
-                 database.content().sensor.camera,
-                 database,
-                 regions,
-                 field,
+        context_{scene.scan.image, database.content().sensor.camera, database, regions,
                  NearestDataPoint(scene.scan.image)},
         labelled_(label_scan(scene.scan.image, context_.camera, database.content().sensor, regions)) {
     for (const SceneObject& object : scene.objects) {
@@ -147,42 +145,34 @@ class SceneTeacher {
     }
   }
 
-  Lessons teach(const std::vector<ObjectHypothesis>& hypotheses, const AcceptanceTrainingOptions& options,
-                Random random) {
+  Lessons teach(const AcceptanceTrainingOptions& options, Random random) {
     if (truth_) {
       learn(displaced(model_, *truth_, 0.01 * model_.diameter, 0.03, random));  // comes home
       learn(displaced(model_, *truth_, 0.1 * model_.diameter, 0.3, random));    // may be caught elsewhere
       learn(displaced(model_, *truth_, 0.05 * model_.diameter, 3.0, random));   // turned round
     }
-    std::vector<std::pair<double, Pose>> starts;  // by overlap
-    const std::size_t most = std::min(hypotheses.size(), static_cast<std::size_t>(options.most_hypotheses));
-    for (std::size_t i = 0; i < most; ++i) {
-      const std::optional<Pose> start = estimate_pose(context_, hypotheses[i]);
-      if (start) starts.emplace_back(overlap(*start), *start);
-    }
-    std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    // The best half, and of the rest some that overlap less: the least overlap of a right one is to be known.
-    for (int i = 0; i < options.most_refined && !starts.empty(); ++i) {
-      const std::size_t at = i % 2 == 0
-                                 ? static_cast<std::size_t>(i / 2)
-                                 : static_cast<std::size_t>(random.integer(0, static_cast<int>(starts.size()) - 1));
-      if (at >= starts.size()) break;
-      if (learn(starts[at].second)) lessons_.overlaps.push_back(starts[at].first);
+    StartSearchCounts counts;
+    const std::vector<StartPose> starts = find_starts(context_.database, labelled_, {}, counts);
+    // The best looking, and of the rest some: the least quality that comes to a right pose is to be known.
+    const int most = std::min(options.most_hypotheses, static_cast<int>(starts.size()));
+    for (int i = 0; i < options.most_refined && i < most; ++i) {
+      const int at = i % 2 == 0 ? i / 2 : random.integer(0, most - 1);
+      const StartPose& start = starts[static_cast<std::size_t>(at)];
+      if (!learn(start.T_sensor_model)) continue;
+      EvidenceOptions rough;
+      rough.distance = TwoWayOptions{}.start_distance;
+      lessons_.qualities.push_back(start.quality);
+      lessons_.starts.push_back(evidence_features(gather_evidence(model_, start.T_sensor_model, labelled_, rough)));
     }
     return lessons_;
   }
 
  private:
-  double overlap(const Pose& start) const {
-    EvidenceOptions rough;
-    rough.distance = TwoWayOptions{}.start_distance;
-    const PoseEvidence evidence = gather_evidence(model_, start, labelled_, rough);
-    return static_cast<double>(evidence.explained) / std::max(1, evidence.drawn);
-  }
-
   // Refines a start and takes down what its evidence looks like. Whether it came to a right pose.
   bool learn(const Pose& start) {
-    const Pose pose = localize(model_, context_.sphere, start, context_.data, {}).T_sensor_model;
+    LocalizationOptions localization;
+    localization.reach = kTwoWayReach;
+    const Pose pose = localize(model_, context_.sphere, start, context_.data, localization).T_sensor_model;
     const PosedModel posed{model_, pose};
     const double share = truth_ ? same_share(posed, {model_, *truth_}, context_.camera) : 0.0;
     const bool right = share >= kRightShare;
@@ -216,12 +206,8 @@ Lessons lessons_of_scene(const std::vector<CadModel>& cast, const Database& data
   const CompiledDatabase& settings = database.content();
   const Scene scene = training_scene(cast, settings.sensor, options, index);
   const auto regions = extract_regions(scene.scan.image, settings.sensor.camera, settings.segmentation);
-  const BackgroundOptions background = background_for(settings.density);
-  const auto matches = match_likelihoods(regions, database, background);
-  const auto field = build_hypothesis_field(regions, matches, database, background, {});
-  const auto hypotheses = hypothesis_cliques(field, database, highest_confidence_first(field));
-  return SceneTeacher(database, cast, scene, regions, field)
-      .teach(hypotheses, options, Random(options.seed, static_cast<std::uint64_t>(index)));
+  return SceneTeacher(database, cast, scene, regions)
+      .teach(options, Random(options.seed, static_cast<std::uint64_t>(index)));
 }
 
 // Both classes always have a voice: what any object's perfect and worthless evidence looks like.
@@ -265,11 +251,11 @@ AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compi
   });
 
   Lessons all;
-  double least_overlap = 1.0;
   for (const Lessons& lessons : of_scene) {
     all.right.insert(all.right.end(), lessons.right.begin(), lessons.right.end());
     all.wrong.insert(all.wrong.end(), lessons.wrong.begin(), lessons.wrong.end());
-    for (const double overlap : lessons.overlaps) least_overlap = std::min(least_overlap, overlap);
+    all.qualities.insert(all.qualities.end(), lessons.qualities.begin(), lessons.qualities.end());
+    all.starts.insert(all.starts.end(), lessons.starts.begin(), lessons.starts.end());
   }
   add_ideals(all);
   const auto rights = static_cast<Eigen::Index>(all.right.size());
@@ -288,7 +274,12 @@ AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compi
   for (int k = 0; k < kEvidenceFeatureCount; ++k) model.weights[static_cast<std::size_t>(k)] = fit.weights[k];
   model.bias = fit.bias;
   // Without a single right pose to go by, nothing is given up early.
-  model.least_overlap = least_overlap < 1.0 ? kOverlapReserve * least_overlap : 0.0;
+  if (!all.starts.empty()) {
+    model.least_quality = kReserve * *std::min_element(all.qualities.begin(), all.qualities.end());
+    double least = 1.0;
+    for (const Features& start : all.starts) least = std::min(least, probability_right(model, start));
+    model.least_probability = kReserve * least / (1.0 - least + kReserve * least);  // the odds
+  }
   model.samples = static_cast<int>(samples);
   return model;
 }

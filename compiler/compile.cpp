@@ -23,6 +23,7 @@ CompiledModel geometry_of(const CadModel& cad) {
   }
   for (const Eigen::Vector3d& vertex : cad.vertices) model.vertices.push_back(vertex.cast<float>());
   model.triangles = cad.triangles;
+  model.triangle_faces = cad.triangle_face;
   return model;
 }
 

@@ -104,7 +104,8 @@ void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
   message.set_hidden_share(acceptance.weights[kHiddenShare]);
   message.set_found_pieces(acceptance.weights[kFoundPieces]);
   message.set_bias(acceptance.bias);
-  message.set_least_overlap(acceptance.least_overlap);
+  message.set_least_quality(acceptance.least_quality);
+  message.set_least_probability(acceptance.least_probability);
   message.set_samples(static_cast<std::uint32_t>(acceptance.samples));
 }
 
@@ -122,6 +123,7 @@ void fill(v1::Model& message, const CompiledModel& model) {
   for (const Eigen::Vector3f& vertex : model.vertices) append(*message.mutable_vertices(), vertex);
   for (const std::array<int, 3>& triangle : model.triangles)
     for (const int vertex : triangle) message.add_triangles(static_cast<std::uint32_t>(vertex));
+  for (const int face : model.triangle_faces) message.add_triangle_faces(static_cast<std::uint32_t>(face));
   if (model.acceptance.samples > 0) fill(*message.mutable_acceptance(), model.acceptance);
 }
 

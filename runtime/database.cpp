@@ -152,7 +152,8 @@ AcceptanceModel from_message(const v1::AcceptanceModel& message) {
   acceptance.weights[kHiddenShare] = message.hidden_share();
   acceptance.weights[kFoundPieces] = message.found_pieces();
   acceptance.bias = message.bias();
-  acceptance.least_overlap = message.least_overlap();
+  acceptance.least_quality = message.least_quality();
+  acceptance.least_probability = message.least_probability();
   acceptance.samples = to_int(message.samples());
   return acceptance;
 }
@@ -182,6 +183,8 @@ CompiledModel from_message(const v1::Model& message, const std::string& file) {
   model.triangles.reserve(static_cast<std::size_t>(message.triangles_size()) / 3);
   for (int i = 0; i < message.triangles_size(); i += 3)
     model.triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
+  model.triangle_faces.reserve(static_cast<std::size_t>(message.triangle_faces_size()));
+  for (const std::uint32_t face : message.triangle_faces()) model.triangle_faces.push_back(to_int(face));
   model.acceptance = from_message(message.acceptance());
   return model;
 }

@@ -179,6 +179,11 @@ void check_mesh(const Place& place) {
   for (std::size_t i = 0; i < model.triangles.size(); ++i)
     for (const int vertex : model.triangles[i])
       require(is_index(vertex, model.vertices.size()), place, "triangle", i, "it names a vertex that does not exist");
+  if (model.triangle_faces.empty()) return;  // a database of an earlier compiler
+  require(model.triangle_faces.size() == model.triangles.size(), place, "not every triangle has a face");
+  for (std::size_t i = 0; i < model.triangles.size(); ++i)
+    require(is_index(model.triangle_faces[i], model.faces.size()), place, "triangle", i,
+            "it names a face that does not exist");
 }
 
 void check_acceptance(const Place& place) {
@@ -187,8 +192,8 @@ void check_acceptance(const Place& place) {
   const auto finite = [](double weight) { return std::isfinite(weight); };
   require(std::all_of(acceptance.weights.begin(), acceptance.weights.end(), finite) && finite(acceptance.bias), place,
           "a weight of the acceptance model is not finite");
-  require(acceptance.least_overlap >= 0.0 && acceptance.least_overlap <= 1.0, place,
-          "the least overlap of the acceptance model is outside 0 to 1");
+  for (const double least : {acceptance.least_quality, acceptance.least_probability})
+    require(least >= 0.0 && least <= 1.0, place, "what the acceptance model asks of a start is outside 0 to 1");
 }
 
 void check_settings(const CompiledDatabase& database, const std::string& file) {

@@ -91,6 +91,13 @@ bool Refinement::rotate() {
   });
 }
 
+// guess: of a data point, -1 = none.
+NearestDataPoint::Answer nearest_to(const Eigen::Vector3f& query, int guess, const NearestDataPoint& data,
+                                    const LocalizationOptions& options) {
+  if (options.reach > 0.0) return data.find_within(query, static_cast<float>(options.reach), guess);
+  return guess < 0 ? data.find(query) : data.find(query, guess);
+}
+
 }  // namespace
 
 std::vector<int> visible_points(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model) {
@@ -118,9 +125,9 @@ EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<i
     const TemplatePoint& point = model.surface.points[static_cast<std::size_t>(visible[k])];
     const Eigen::Vector3d x = T_sensor_model * point.position.cast<double>();
     const Eigen::Vector3f query = x.cast<float>();
-    const auto answer = nearby == nullptr ? data.find(query) : data.find(query, nearby->residuals[k].data_index);
+    const auto answer = nearest_to(query, nearby == nullptr ? -1 : nearby->residuals[k].data_index, data, options);
     const Eigen::Vector3d nearest = answer.point.cast<double>();
-    const double z = (x - nearest).norm();  // Equation (10)
+    const double z = answer.index < 0 ? options.reach : (x - nearest).norm();  // Equation (10)
     evaluation.residuals.push_back({x, nearest, z, answer.index});
     evaluation.energy += rho(options.loss, z / options.sigma);  // Equation (9)
   }

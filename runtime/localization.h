@@ -17,6 +17,9 @@ struct LocalizationOptions {
   double sigma = 2.0;             // standard deviation of the sensor's error, Section V.B. Unit: mm. Limit: > 0.
   double translation_step = 1.0;  // Section V.B. Unit: mm. Limit: > 0.
   double rotation_step = 0.017453292519943295;  // 1 degree, Section V.B. Unit: rad. Limit: > 0.
+  // Template points without data this near pull nowhere: beyond the paper, where each is pulled to its nearest data
+  // point however far. Searches end sooner; 0 = the paper's. Unit: mm. Limit: >= 0.
+  double reach = 0.0;
   int most_rounds = 50;  // the paper's UNTIL may cycle when the aspect changes: a cap on its rounds. Limit: >= 1.
 };
 

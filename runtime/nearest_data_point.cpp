@@ -4,6 +4,7 @@
 #include <flann/algorithms/kdtree_single_index.h>
 
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -25,10 +26,11 @@ class Nearest final : public flann::ResultSet<float> {
   }
   [[nodiscard]] float worstDist() const override { return distance_; }
   [[nodiscard]] std::size_t index() const { return index_; }
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
  private:
   float distance_ = std::numeric_limits<float>::max();
-  std::size_t index_ = 0;
+  std::size_t index_ = kNone;
 };
 
 }  // namespace
@@ -42,6 +44,7 @@ struct NearestDataPoint::Impl {
   [[nodiscard]] Answer search(const Eigen::Vector3f& query, Nearest nearest) const {
     assert(query.allFinite());
     tree.findNeighbors(nearest, query.data(), flann::SearchParams());
+    if (nearest.index() == Nearest::kNone) return {query, -1, std::sqrt(nearest.worstDist()), -1};
     const Eigen::Vector3f& point = points[nearest.index()];
     return {point, cells[nearest.index()], (query - point).norm(), static_cast<int>(nearest.index())};
   }
@@ -69,6 +72,15 @@ NearestDataPoint::Answer NearestDataPoint::find(const Eigen::Vector3f& query) co
 NearestDataPoint::Answer NearestDataPoint::find(const Eigen::Vector3f& query, int guess) const {
   const auto index = static_cast<std::size_t>(guess);
   return impl_->search(query, Nearest((query - impl_->points[index]).squaredNorm(), index));
+}
+
+NearestDataPoint::Answer NearestDataPoint::find_within(const Eigen::Vector3f& query, float reach, int guess) const {
+  if (guess >= 0) {
+    const auto index = static_cast<std::size_t>(guess);
+    const float squared = (query - impl_->points[index]).squaredNorm();
+    if (squared < reach * reach) return impl_->search(query, Nearest(squared, index));
+  }
+  return impl_->search(query, Nearest(reach * reach, Nearest::kNone));
 }
 
 }  // namespace foresight

@@ -143,11 +143,14 @@ std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& 
   return features;
 }
 
-double probability_right(const AcceptanceModel& model, const PoseEvidence& evidence) {
-  const auto features = evidence_features(evidence);
+double probability_right(const AcceptanceModel& model, const std::array<double, kEvidenceFeatureCount>& features) {
   double sum = model.bias;
   for (std::size_t i = 0; i < features.size(); ++i) sum += model.weights[i] * features[i];
   return 1.0 / (1.0 + std::exp(-sum));
+}
+
+double probability_right(const AcceptanceModel& model, const PoseEvidence& evidence) {
+  return probability_right(model, evidence_features(evidence));
 }
 
 PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,

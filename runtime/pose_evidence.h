@@ -54,6 +54,8 @@ struct PoseEvidence {
 [[nodiscard]] std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence);
 
 // How probably a pose with this evidence is right.
+[[nodiscard]] double probability_right(const AcceptanceModel& model,
+                                       const std::array<double, kEvidenceFeatureCount>& features);
 [[nodiscard]] double probability_right(const AcceptanceModel& model, const PoseEvidence& evidence);
 
 [[nodiscard]] PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model,

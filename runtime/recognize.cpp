@@ -5,6 +5,7 @@
 #include "common/errors.h"
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
+#include "runtime/hypothesis_cliques.h"
 #include "runtime/scan_context.h"
 #include "runtime/two_way_search.h"
 #include "runtime/verify_in_order.h"
@@ -22,6 +23,7 @@ std::vector<Label> prune(const HypothesisField& field, Pruning pruning) {
 LocalizationOptions localization_options(const RecognizeOptions& options) {
   LocalizationOptions localization;
   localization.loss = options.loss;
+  if (options.method == Method::two_way) localization.reach = kTwoWayReach;
   return localization;
 }
 
@@ -55,12 +57,35 @@ void check(const RecognizeOptions& options) {
 void check_method(const RecognizeOptions& options, const Database& database, const std::string& file) {
   if (options.method == Method::paper) return;
   for (const CompiledModel& model : database.models()) {
-    if (model.acceptance.samples > 0) continue;
+    if (model.acceptance.samples > 0 && !model.triangle_faces.empty()) continue;
     throw DatabaseError(DatabaseFault::incompatible, file,
-                        "object " + model.name + " has no acceptance model, which the two-way method needs",
+                        "object " + model.name + " lacks what the two-way method needs",
                         "compile it again with this version of foresightc, or use --method paper");
   }
 }
+
+namespace {
+
+// Sections III to V.
+void recognize_as_published(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,
+                            RecognitionResult& result) {
+  Stopwatch watch;
+  const Database& database = scan.database;
+  const BackgroundOptions background = background_for(database.content().density);
+  const auto matches = match_likelihoods(scan.regions, database, background);                             // eqs. (4), (5)
+  const auto field =
+      build_hypothesis_field(scan.regions, matches, database, background, options.potentials);            // eqs. (1)-(3)
+  const auto labels = prune(field, options.pruning);
+  watch.lap(result.milliseconds.field);
+  const auto hypotheses = hypothesis_cliques(field, database, labels);                                    // least energy first
+  watch.lap(result.milliseconds.hypotheses);
+  result.statistics.threshold_matches = static_cast<long>(matches.size());
+  result.statistics.active_matches = static_cast<long>(std::count(labels.begin(), labels.end(), kOn));
+  result.statistics.hypotheses = static_cast<long>(hypotheses.size());
+  verify_in_order(scan, field, hypotheses, options, deadline, result);                                    // Section V
+}
+
+}  // namespace
 
 RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
                             const RecognizeOptions& options, const Deadline& deadline) {
@@ -69,29 +94,15 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   Stopwatch watch;
   const auto regions = extract_regions(image, camera, database.content().segmentation);
   watch.lap(result.milliseconds.extract);
-
-  const BackgroundOptions background = background_for(database.content().density);
-  const auto matches = match_likelihoods(regions, database, background);                             // eqs. (4), (5)
-  const auto field =
-      build_hypothesis_field(regions, matches, database, background, options.potentials);            // eqs. (1)-(3)
-  const auto labels = prune(field, options.pruning);
-  watch.lap(result.milliseconds.field);
-  const auto hypotheses = hypothesis_cliques(field, database, labels);                               // least energy first
-  watch.lap(result.milliseconds.hypotheses);
-
   result.statistics.regions = static_cast<int>(regions.size());
   result.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());
-  result.statistics.threshold_matches = static_cast<long>(matches.size());
-  result.statistics.active_matches = static_cast<long>(std::count(labels.begin(), labels.end(), kOn));
-  result.statistics.hypotheses = static_cast<long>(hypotheses.size());
-
-  if (!hypotheses.empty()) {
-    const ScanContext scan{image, camera, database, regions, field, NearestDataPoint(image)};
+  if (!regions.empty()) {
+    const ScanContext scan{image, camera, database, regions, NearestDataPoint(image)};
     watch.lap(result.milliseconds.localize);  // the k-d tree serves localization
     if (options.method == Method::paper) {
-      verify_in_order(scan, hypotheses, options, deadline, result);                                  // Section V
+      recognize_as_published(scan, options, deadline, result);
     } else {
-      search_two_way(scan, hypotheses, options, deadline, result);
+      search_two_way(scan, options, deadline, result);
     }
   }
   total.lap(result.milliseconds.total);

@@ -1,28 +1,9 @@
 #include "runtime/scan_context.h"
 
-#include <algorithm>
-
-#include "runtime/pose_from_matches.h"
-
 namespace foresight {
 
-std::optional<Pose> estimate_pose(const ScanContext& scan, const ObjectHypothesis& hypothesis) {
-  std::vector<RegionFaceMatch> matches;
-  for (const int index : hypothesis.matches) {
-    const Match& match = scan.match(index);
-    matches.push_back({&scan.regions[static_cast<std::size_t>(match.region)], &scan.database.face(match.face)});
-  }
-  return pose_from_matches(matches);
-}
-
-bool uses_any(const ScanContext& scan, const ObjectHypothesis& hypothesis, const std::vector<bool>& taken) {
-  return std::any_of(hypothesis.matches.begin(), hypothesis.matches.end(),
-                     [&](int index) { return taken[static_cast<std::size_t>(scan.match(index).region)]; });
-}
-
-RefinedPose refine(const ScanContext& scan, const ObjectHypothesis& hypothesis, const Pose& start,
+RefinedPose refine(const ScanContext& scan, const CompiledModel& model, const Pose& start,
                    const RecognizeOptions& options, RecognitionResult& result, Stopwatch& watch) {
-  const CompiledModel& model = scan.model(hypothesis);
   RefinedPose refined;
   refined.localization = localize(model, scan.sphere, start, scan.data, localization_options(options));
   watch.lap(result.milliseconds.localize);
@@ -32,18 +13,6 @@ RefinedPose refine(const ScanContext& scan, const ObjectHypothesis& hypothesis, 
   result.statistics.energy_evaluations += refined.localization.energy_evaluations;
   watch.lap(result.milliseconds.verify);
   return refined;
-}
-
-Detection make_detection(const ScanContext& scan, const ObjectHypothesis& hypothesis, const RefinedPose& refined,
-                         int rank) {
-  Detection detection = to_detection(scan.model(hypothesis), refined);
-  detection.rank = rank;
-  for (const int index : hypothesis.matches) {
-    const Match& match = scan.match(index);
-    detection.faces.push_back(scan.database.faces()[static_cast<std::size_t>(match.face)].face);
-    detection.regions.push_back(match.region);
-  }
-  return detection;
 }
 
 bool limits_reached(const RecognizeOptions& options, const Deadline& deadline, RecognitionResult& result) {

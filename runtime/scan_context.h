@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
 #include <vector>
 
 #include "common/camera.h"
@@ -10,7 +9,6 @@
 #include "common/region_attributes.h"
 #include "common/viewing_sphere.h"
 #include "runtime/database.h"
-#include "runtime/hypothesis_cliques.h"
 #include "runtime/nearest_data_point.h"
 #include "runtime/recognize.h"
 
@@ -21,14 +19,8 @@ struct ScanContext {
   const PinholeCamera& camera;
   const Database& database;
   const std::vector<DescribedRegion>& regions;
-  const HypothesisField& field;
   NearestDataPoint data;
   ViewingSphere sphere{kAspectCells};
-
-  [[nodiscard]] const CompiledModel& model(const ObjectHypothesis& hypothesis) const {
-    return database.models()[static_cast<std::size_t>(hypothesis.model)];
-  }
-  [[nodiscard]] const Match& match(int index) const { return field.matches[static_cast<std::size_t>(index)]; }
 };
 
 // Adds the time since the last lap to a stage.
@@ -44,20 +36,9 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// The pose of a hypothesis's matches, none where they do not determine one.
-[[nodiscard]] std::optional<Pose> estimate_pose(const ScanContext& scan, const ObjectHypothesis& hypothesis);
-
-// Whether the hypothesis rests on a region that is taken.
-[[nodiscard]] bool uses_any(const ScanContext& scan, const ObjectHypothesis& hypothesis,
-                            const std::vector<bool>& taken);
-
 // Localization and verification of a start, counted and timed in the result.
-[[nodiscard]] RefinedPose refine(const ScanContext& scan, const ObjectHypothesis& hypothesis, const Pose& start,
+[[nodiscard]] RefinedPose refine(const ScanContext& scan, const CompiledModel& model, const Pose& start,
                                  const RecognizeOptions& options, RecognitionResult& result, Stopwatch& watch);
-
-// A refined pose with the hypothesis it came of. rank: from 1.
-[[nodiscard]] Detection make_detection(const ScanContext& scan, const ObjectHypothesis& hypothesis,
-                                       const RefinedPose& refined, int rank);
 
 // Whether the limits of the options or the deadline end the search.
 [[nodiscard]] bool limits_reached(const RecognizeOptions& options, const Deadline& deadline, RecognitionResult& result);

@@ -1,29 +1,80 @@
 #include "runtime/verify_in_order.h"
 
+#include <algorithm>
+
 #include "runtime/explained_regions.h"
+#include "runtime/pose_from_matches.h"
 
 namespace foresight {
+namespace {
 
-void verify_in_order(const ScanContext& scan, const std::vector<ObjectHypothesis>& hypotheses,
-                     const RecognizeOptions& options, const Deadline& deadline, RecognitionResult& result) {
-  std::vector<bool> taken(scan.regions.size(), false);
-  Stopwatch watch;
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    const ObjectHypothesis& hypothesis = hypotheses[i];
-    if (uses_any(scan, hypothesis, taken)) continue;
-    if (limits_reached(options, deadline, result)) return;
-    const std::optional<Pose> start = estimate_pose(scan, hypothesis);
-    if (!start) continue;
-    const RefinedPose refined = refine(scan, hypothesis, *start, options, result, watch);
-    if (!refined.verification.accepted) continue;
-    result.detections.push_back(make_detection(scan, hypothesis, refined, static_cast<int>(i) + 1));
-    for (const int region : result.detections.back().regions) taken[static_cast<std::size_t>(region)] = true;
-    for (const int region :
-         explained_regions(scan.model(hypothesis), refined.localization.T_sensor_model, scan.image, scan.regions)) {
-      taken[static_cast<std::size_t>(region)] = true;
+class VerificationInOrder {
+ public:
+  VerificationInOrder(const ScanContext& scan, const HypothesisField& field, const RecognizeOptions& options,
+                      RecognitionResult& result)
+      : scan_(scan), field_(field), options_(options), result_(result), taken_(scan.regions.size(), false) {}
+
+  void run(const std::vector<ObjectHypothesis>& hypotheses, const Deadline& deadline) {
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+      if (uses_taken(hypotheses[i])) continue;
+      if (limits_reached(options_, deadline, result_)) return;
+      verify_one(hypotheses[i], static_cast<int>(i) + 1);
     }
-    watch.lap(result.milliseconds.verify);
   }
+
+ private:
+  [[nodiscard]] const Match& match(int index) const { return field_.matches[static_cast<std::size_t>(index)]; }
+
+  [[nodiscard]] bool uses_taken(const ObjectHypothesis& hypothesis) const {
+    return std::any_of(hypothesis.matches.begin(), hypothesis.matches.end(),
+                       [&](int index) { return taken_[static_cast<std::size_t>(match(index).region)]; });
+  }
+
+  // The pose of the matches, none where they do not determine one.
+  [[nodiscard]] std::optional<Pose> estimate_pose(const ObjectHypothesis& hypothesis) const {
+    std::vector<RegionFaceMatch> matches;
+    for (const int index : hypothesis.matches) {
+      const auto region = static_cast<std::size_t>(match(index).region);
+      matches.push_back({&scan_.regions[region], &scan_.database.face(match(index).face)});
+    }
+    return pose_from_matches(matches);
+  }
+
+  void verify_one(const ObjectHypothesis& hypothesis, int rank) {
+    const std::optional<Pose> start = estimate_pose(hypothesis);
+    if (!start) return;
+    const CompiledModel& model = scan_.database.models()[static_cast<std::size_t>(hypothesis.model)];
+    const RefinedPose refined = refine(scan_, model, *start, options_, result_, watch_);
+    if (!refined.verification.accepted) return;
+    Detection detection = to_detection(model, refined);
+    detection.rank = rank;
+    for (const int index : hypothesis.matches) {
+      detection.faces.push_back(scan_.database.faces()[static_cast<std::size_t>(match(index).face)].face);
+      detection.regions.push_back(match(index).region);
+    }
+    for (const int region : detection.regions) taken_[static_cast<std::size_t>(region)] = true;
+    const Pose& pose = refined.localization.T_sensor_model;
+    for (const int region : explained_regions(model, pose, scan_.image, scan_.regions)) {
+      taken_[static_cast<std::size_t>(region)] = true;
+    }
+    result_.detections.push_back(std::move(detection));
+    watch_.lap(result_.milliseconds.verify);
+  }
+
+  const ScanContext& scan_;
+  const HypothesisField& field_;
+  const RecognizeOptions& options_;
+  RecognitionResult& result_;
+  std::vector<bool> taken_;  // by region
+  Stopwatch watch_;
+};
+
+}  // namespace
+
+void verify_in_order(const ScanContext& scan, const HypothesisField& field,
+                     const std::vector<ObjectHypothesis>& hypotheses, const RecognizeOptions& options,
+                     const Deadline& deadline, RecognitionResult& result) {
+  VerificationInOrder(scan, field, options, result).run(hypotheses, deadline);
 }
 
 }  // namespace foresight

@@ -1,0 +1,112 @@
+#include "runtime/hypothesis_queue.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace foresight {
+
+RegionRelations::RegionRelations(const std::vector<DescribedRegion>& regions)
+    : regions_(regions), known_(regions.size() * (regions.size() + 1) / 2) {}
+
+const RelationVector& RegionRelations::between(int a, int b) {
+  const auto high = static_cast<std::size_t>(std::max(a, b));
+  const auto low = static_cast<std::size_t>(std::min(a, b));
+  std::optional<RelationVector>& relation = known_[high * (high - 1) / 2 + low];
+  if (!relation) relation = relate(regions_[low], regions_[high]);
+  return *relation;
+}
+
+// The highest bound leads; of equal ones the lowest regions and matches, so that the order is the same everywhere.
+bool HypothesisQueue::Node::operator<(const Node& other) const {
+  return std::tuple(bound, -a, -b, -model, -match_a, -match_b) <
+         std::tuple(other.bound, -other.a, -other.b, -other.model, -other.match_a, -other.match_b);
+}
+
+HypothesisQueue::HypothesisQueue(const std::vector<RegionMatches>& matches,
+                                 const std::vector<DescribedRegion>& regions, const Database& database,
+                                 const MatchRater& rater, RegionRelations& relations)
+    : matches_(matches),
+      regions_(regions),
+      database_(database),
+      rater_(rater),
+      relations_(relations),
+      runs_(matches.size()) {
+  std::vector<double> best(matches.size(), 0.0);
+  for (std::size_t r = 0; r < matches.size(); ++r) {
+    for (std::size_t i = 0; i < matches[r].size(); ++i) {
+      const RatedMatch& match = matches[r][i];
+      if (runs_[r].empty() || runs_[r].back().model != match.model) {
+        runs_[r].push_back({match.model, i, i, match.rating});
+      }
+      Run& run = runs_[r].back();
+      run.last = i + 1;
+      run.best = std::max(run.best, match.rating);
+    }
+    for (const Run& run : runs_[r]) best[r] = &run == &runs_[r].front() ? run.best : std::max(best[r], run.best);
+  }
+  for (std::size_t b = 1; b < matches.size(); ++b) {
+    if (matches[b].empty()) continue;
+    for (std::size_t a = 0; a < b; ++a) {
+      if (matches[a].empty()) continue;
+      nodes_.push({best[a] + best[b] + rater.highest_pair_rating(), static_cast<int>(a), static_cast<int>(b)});
+    }
+  }
+}
+
+std::optional<MatchPair> HypothesisQueue::next(double least_rating) {
+  while (!nodes_.empty() && nodes_.top().bound >= least_rating) {
+    const Node node = nodes_.top();
+    nodes_.pop();
+    if (node.match_a >= 0) {
+      return MatchPair{matches_[static_cast<std::size_t>(node.a)][static_cast<std::size_t>(node.match_a)],
+                       matches_[static_cast<std::size_t>(node.b)][static_cast<std::size_t>(node.match_b)], node.bound};
+    }
+    if (node.model >= 0) {
+      split_by_match(node);
+    } else {
+      split_by_model(node);
+    }
+  }
+  return std::nullopt;
+}
+
+void HypothesisQueue::split_by_model(const Node& node) {
+  const std::vector<Run>& of_a = runs_[static_cast<std::size_t>(node.a)];
+  const std::vector<Run>& of_b = runs_[static_cast<std::size_t>(node.b)];
+  for (auto a = of_a.begin(), b = of_b.begin(); a != of_a.end() && b != of_b.end();) {
+    if (a->model == b->model) {
+      nodes_.push({a->best + b->best + rater_.highest_pair_rating(), node.a, node.b, a->model});
+      ++a;
+      ++b;
+    } else if (a->model < b->model) {
+      ++a;
+    } else {
+      ++b;
+    }
+  }
+}
+
+void HypothesisQueue::split_by_match(const Node& node) {
+  const auto run_of = [&](int region) -> const Run& {
+    const std::vector<Run>& runs = runs_[static_cast<std::size_t>(region)];
+    return *std::lower_bound(runs.begin(), runs.end(), node.model,
+                             [](const Run& run, int model) { return run.model < model; });
+  };
+  const RegionMatches& of_a = matches_[static_cast<std::size_t>(node.a)];
+  const RegionMatches& of_b = matches_[static_cast<std::size_t>(node.b)];
+  const RelationVector& relation = relations_.between(node.a, node.b);
+  const bool cut = rater_.is_cut(regions_[static_cast<std::size_t>(node.a)]) ||
+                   rater_.is_cut(regions_[static_cast<std::size_t>(node.b)]);
+  const Run& run_a = run_of(node.a);
+  const Run& run_b = run_of(node.b);
+  for (std::size_t i = run_a.first; i < run_a.last; ++i) {
+    for (std::size_t j = run_b.first; j < run_b.last; ++j) {
+      const FacePair* pair = database_.pair(node.model, of_a[i].face, of_b[j].face);
+      if (pair == nullptr) continue;
+      nodes_.push({of_a[i].rating + of_b[j].rating + rater_.rate(*pair, relation, cut), node.a, node.b, node.model,
+                   static_cast<int>(i), static_cast<int>(j)});
+    }
+  }
+}
+
+}  // namespace foresight

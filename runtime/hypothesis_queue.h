@@ -1,0 +1,71 @@
+// Pairs of matches that one object may explain, best rated first, made only as they are asked for.
+//
+// The paper lists all cliques and sorts them. In clutter, where parts of faces match much, there are 10^5 and more.
+#pragma once
+
+#include <optional>
+#include <queue>
+#include <vector>
+
+#include "runtime/rated_matches.h"
+
+namespace foresight {
+
+struct MatchPair {
+  RatedMatch a;         // of one model, of two regions and two faces
+  RatedMatch b;
+  double rating = 0.0;  // of both matches and of the pair
+};
+
+// How regions stand to each other, computed when first asked for.
+class RegionRelations {
+ public:
+  explicit RegionRelations(const std::vector<DescribedRegion>& regions);
+  [[nodiscard]] const RelationVector& between(int a, int b);
+
+ private:
+  const std::vector<DescribedRegion>& regions_;
+  std::vector<std::optional<RelationVector>> known_;  // lower triangle
+};
+
+// Best first by a heap of bounds: two regions may be rated no higher than their best matches and the best pair there is;
+// two regions and a model no higher than their best matches of that model. What leads is taken apart until it is a pair.
+class HypothesisQueue {
+ public:
+  // All must outlive the queue.
+  HypothesisQueue(const std::vector<RegionMatches>& matches, const std::vector<DescribedRegion>& regions,
+                  const Database& database, const MatchRater& rater, RegionRelations& relations);
+
+  // None when there are no more pairs rated above `least_rating`.
+  [[nodiscard]] std::optional<MatchPair> next(double least_rating);
+
+ private:
+  // A run of one region's matches with one model.
+  struct Run {
+    int model = 0;
+    std::size_t first = 0;
+    std::size_t last = 0;  // behind it
+    double best = 0.0;
+  };
+  struct Node {
+    double bound = 0.0;
+    int a = 0;                // regions
+    int b = 0;
+    int model = -1;           // -1: any
+    int match_a = -1;         // among the matches of the region; -1: any
+    int match_b = -1;
+    bool operator<(const Node& other) const;
+  };
+  void split_by_model(const Node& node);
+  void split_by_match(const Node& node);
+
+  const std::vector<RegionMatches>& matches_;
+  const std::vector<DescribedRegion>& regions_;
+  const Database& database_;
+  const MatchRater& rater_;
+  RegionRelations& relations_;
+  std::vector<std::vector<Run>> runs_;  // by region, models ascending
+  std::priority_queue<Node> nodes_;
+};
+
+}  // namespace foresight

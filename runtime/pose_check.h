@@ -1,0 +1,73 @@
+// A first look at a pose: a hundred points of the surface against the range image, in microseconds. It puts start poses
+// in order; what they are worth is decided by the evidence of every cell (pose_evidence.h) after localization.
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "common/pose.h"
+#include "common/viewing_sphere.h"
+#include "runtime/database.h"
+#include "runtime/pose_evidence.h"
+
+namespace foresight {
+
+// A region that data on a face belong to.
+struct FaceSupport {
+  int region = 0;
+  int face = 0;
+  double cells = 0.0;  // how many of the region's, as estimated from samples
+};
+
+// Cells that would show the object, estimated from samples; compare PoseEvidence.
+struct PoseCheck {
+  double total = 0.0;
+  double explained = 0.0;
+  double owned = 0.0;
+  double contradicted = 0.0;  // behind or tilted
+  double hidden = 0.0;
+  std::vector<FaceSupport> supports;
+
+  // Owned less contradicted cells as a share of all, with a doubt that outweighs a handful; at most 1.
+  [[nodiscard]] double quality() const;
+};
+
+struct PoseCheckOptions {
+  int samples = 96;       // about as many of the points in sight
+  double distance = 8.0;  // of data that agree. Unit: mm.
+  double normal_cosine = 0.87;
+};
+
+// Not for several threads at once: it learns the samples of each aspect as it goes.
+class PoseChecker {
+ public:
+  PoseChecker(const Database& database, const LabelledScan& scan, const PoseCheckOptions& options = {});
+
+  [[nodiscard]] PoseCheck check(int model, const Pose& T_sensor_model);
+
+ private:
+  struct Sample {
+    Eigen::Vector3f position;  // model frame. Unit: mm.
+    int face = 0;
+    float area = 0.0F;  // that it stands for. Unit: mm^2.
+  };
+  const std::vector<Sample>& samples_of(int model, int aspect);
+  [[nodiscard]] std::vector<Sample> choose_samples(const CompiledModel& model, const std::vector<int>& faces) const;
+
+  const Database& database_;
+  const LabelledScan& scan_;
+  PoseCheckOptions options_;
+  ViewingSphere sphere_{kAspectCells};
+  double least_cosine_ = 0.0;
+  std::map<std::pair<int, int>, std::vector<Sample>> samples_;  // by model and aspect
+  std::vector<double> of_region_;                               // scratch: explained cells
+};
+
+// The pose moved so that the planes of its faces lie in those of the regions that support them: least squares over
+// planes, weighted by their cells; directions that no plane decides stay as they are. Regions of which the object
+// explains less than a third take no part.
+[[nodiscard]] Pose refit_to_planes(const CompiledModel& model, const Pose& T_sensor_model, const PoseCheck& check,
+                                   const std::vector<DescribedRegion>& regions);
+
+}  // namespace foresight
