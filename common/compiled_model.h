@@ -49,15 +49,17 @@ struct SurfaceTemplate {
   std::array<std::vector<int>, kAspectCells> aspects;            // faces visible from each cell of ViewingSphere(80), ascending
 };
 
-// What two-way verification counts, as shares: the inputs of an AcceptanceModel (runtime/pose_evidence.h).
+// What two-way verification counts: the inputs of an AcceptanceModel, each from 0 to 1 (runtime/pose_evidence.h).
 enum EvidenceFeature : int {
   kOwnedShare = 0,     // explained cells, weighted by the share of their regions, of those with data on or behind
-  kContradictedShare,  // cells with data behind the surface or of another orientation
-  kMissingShare,       // cells without data
+  kContradictedShare,  // cells with data behind the surface or of another orientation, of those not hidden
+  kMissingShare,       // cells without data, of those not hidden
   kHiddenShare,        // cells with data before the surface
   kFoundPieces,        // triangles at least half explained, of those with data
+  kAmount,             // how much there is to go by: towards 1 with the number of owned cells
+  kOtherSurfaces,      // explained cells that are not of the surface with most of them
 };
-inline constexpr int kEvidenceFeatureCount = 5;
+inline constexpr int kEvidenceFeatureCount = 7;
 
 // How probable it is that a pose with this evidence is right: a logistic model that the compiler fits to simulated right
 // and wrong poses of the object.

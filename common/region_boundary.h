@@ -18,8 +18,9 @@ struct BoundaryOptions {
 
 // For each region the share of its boundary at which its face may go on unseen, 0 to 1. Looking from a boundary cell
 // across the boundary, over cells without data or of no region, to the first cell of a region: that one lies before the
-// region's plane (something hides it, or throws a shadow on it), on it (one face in two parts), or there is none because
-// the image ends there. Elsewhere the face ends: what lies beyond is farther away, or another surface that meets it.
+// region's plane (something hides it, or throws a shadow on it), on it (one face in two parts), or there is none
+// because the image ends there. Elsewhere the face ends: what lies beyond is farther away, or another surface that
+// meets it.
 [[nodiscard]] std::vector<double> cut_shares(const std::vector<Region>& regions, const RangeImage& image,
                                              const PinholeCamera& camera, const BoundaryOptions& options = {});
 

@@ -23,10 +23,13 @@ constexpr double kStretch = 1.2;       // of the impostors
 constexpr double kSameDistance = 5.0;  // of cells that show the same. Unit: mm.
 constexpr double kRightShare = 0.9;    // of the cells of poses that show the same: right
 constexpr double kWrongShare = 0.8;    // fewer show the same: wrong; between them nothing is learnt
+constexpr double kNearShare = 0.5;     // of a start that is worth refining here: show the same
 constexpr double kLeastVisible = 0.3;  // an object hidden by more teaches nothing about right poses
 // Keeps the weights finite. With 0.1 the right poses of 80 clean scans all scored 0.73 to 0.90, too little.
 constexpr double kRidge = 0.003;
-constexpr double kReserve = 0.4;  // of the least quality, and odds, that came to a right pose: few scenes were looked at
+// Of the least quality, and the least odds, that came to a right pose: few scenes were looked at.
+constexpr double kQualityReserve = 0.5;
+constexpr double kOddsReserve = 0.02;
 
 using Features = std::array<double, kEvidenceFeatureCount>;
 
@@ -34,7 +37,7 @@ using Features = std::array<double, kEvidenceFeatureCount>;
 struct Lessons {
   std::vector<Features> right;
   std::vector<Features> wrong;
-  // Of starts that came to a right pose.
+  // Of the best looking start that came to a right pose: recognition needs no other.
   std::vector<double> qualities;
   std::vector<Features> starts;
 };
@@ -61,7 +64,8 @@ std::vector<CadModel> cast_of(const CadModel& cad) {
   return cast;
 }
 
-// A third of the scenes each: the object alone; among two impostors; one impostor alone.
+// A quarter of the scenes each: the object alone; among two impostors; among all of them, much hidden; two impostors
+// without it.
 Scene training_scene(const std::vector<CadModel>& cast, const SensorModel& sensor,
                      const AcceptanceTrainingOptions& options, int index) {
   Random random(~options.seed, static_cast<std::uint64_t>(index));
@@ -69,9 +73,12 @@ Scene training_scene(const std::vector<CadModel>& cast, const SensorModel& senso
   const int first = random.integer(1, last);
   const int second = 1 + first % last;
   std::vector<int> chosen;
-  if (index % 3 == 0) chosen = {0};
-  if (index % 3 == 1) chosen = {0, first, second};
-  if (index % 3 == 2) chosen = {first};
+  if (index % 4 == 0) chosen = {0};
+  if (index % 4 == 1) chosen = {0, first, second};
+  if (index % 4 == 2) chosen = {first, second};
+  if (index % 4 == 3) {
+    for (int i = 0; i <= last; ++i) chosen.push_back(i);
+  }
   std::vector<CadModel> models;
   for (const int i : chosen) models.push_back(cast[static_cast<std::size_t>(i)]);
   const int count = static_cast<int>(models.size());
@@ -135,7 +142,8 @@ class SceneTeacher {
       : model_(database.models().front()),
         context_{scene.scan.image, database.content().sensor.camera, database, regions,
                  NearestDataPoint(scene.scan.image)},
-        labelled_(label_scan(scene.scan.image, context_.camera, database.content().sensor, regions)) {
+        labelled_(label_scan(scene.scan.image, context_.camera, database.content().sensor, regions)),
+        settling_(database, labelled_, settling_options(labelled_.sensor)) {
     for (const SceneObject& object : scene.objects) {
       if (object.model == 0 && object.visible_fraction >= kLeastVisible) truth_ = object.T_sensor_model;
       present_ = present_ || object.model == 0;
@@ -153,12 +161,17 @@ class SceneTeacher {
     }
     StartSearchCounts counts;
     const std::vector<StartPose> starts = find_starts(context_.database, labelled_, {}, counts);
-    // The best looking, and of the rest some: the least quality that comes to a right pose is to be known.
-    const int most = std::min(options.most_hypotheses, static_cast<int>(starts.size()));
-    for (int i = 0; i < options.most_refined && i < most; ++i) {
-      const int at = i % 2 == 0 ? i / 2 : random.integer(0, most - 1);
-      const StartPose& start = starts[static_cast<std::size_t>(at)];
-      if (!learn(start.T_sensor_model)) continue;
+    // The best looking right ones and the best looking wrong ones: what recognition will have to tell apart.
+    int near = 0;
+    int far = 0;
+    const int most = std::min(options.most_starts, static_cast<int>(starts.size()));
+    for (int i = 0; i < most; ++i) {
+      const StartPose& start = starts[static_cast<std::size_t>(i)];
+      const PosedModel posed{model_, start.T_sensor_model};
+      const bool is_near = truth_ && same_share(posed, {model_, *truth_}, context_.camera) >= kNearShare;
+      if (++(is_near ? near : far) > (is_near ? options.most_near : options.most_far)) continue;
+      const bool first = lessons_.qualities.empty();
+      if (!learn(start.T_sensor_model) || !first) continue;
       EvidenceOptions rough;
       rough.distance = TwoWayOptions{}.start_distance;
       lessons_.qualities.push_back(start.quality);
@@ -170,14 +183,14 @@ class SceneTeacher {
  private:
   // Refines a start and takes down what its evidence looks like. Whether it came to a right pose.
   bool learn(const Pose& start) {
-    LocalizationOptions localization;
-    localization.reach = kTwoWayReach;
-    const Pose pose = localize(model_, context_.sphere, start, context_.data, localization).T_sensor_model;
+    const Pose pose = localize_and_settle(model_, 0, start, context_, labelled_, {}, settling_).T_sensor_model;
+    EvidenceOptions fine;
+    fine.distance = agreeing_distance(labelled_.sensor);
     const PosedModel posed{model_, pose};
     const double share = truth_ ? same_share(posed, {model_, *truth_}, context_.camera) : 0.0;
     const bool right = share >= kRightShare;
     if (right || is_wrong(posed, share)) {
-      const Features features = evidence_features(gather_evidence(model_, pose, labelled_));
+      const Features features = evidence_features(gather_evidence(model_, pose, labelled_, fine));
       (right ? lessons_.right : lessons_.wrong).push_back(features);
     }
     return right;
@@ -195,6 +208,7 @@ class SceneTeacher {
   const CompiledModel& model_;
   ScanContext context_;
   LabelledScan labelled_;
+  PoseChecker settling_;
   std::optional<Pose> truth_;
   bool present_ = false;
   std::vector<std::pair<CompiledModel, Pose>> impostors_;
@@ -213,7 +227,7 @@ Lessons lessons_of_scene(const std::vector<CadModel>& cast, const Database& data
 // Both classes always have a voice: what any object's perfect and worthless evidence looks like.
 void add_ideals(Lessons& lessons) {
   Features perfect{};
-  perfect[kOwnedShare] = perfect[kFoundPieces] = 1.0;
+  perfect[kOwnedShare] = perfect[kFoundPieces] = perfect[kAmount] = perfect[kOtherSurfaces] = 1.0;
   Features worthless{};
   worthless[kContradictedShare] = 1.0;
   lessons.right.push_back(perfect);
@@ -227,7 +241,7 @@ LogisticFit fit_with_signs(Eigen::MatrixXd features, const Eigen::VectorXd& labe
     LogisticFit fit = fit_logistic(features, labels, kRidge);
     bool all_fit = true;
     for (int k = 0; k < kEvidenceFeatureCount; ++k) {
-      const bool speaks_for = k == kOwnedShare || k == kFoundPieces;
+      const bool speaks_for = k == kOwnedShare || k >= kFoundPieces;
       const bool right_sign = speaks_for ? fit.weights[k] >= 0.0 : fit.weights[k] <= 0.0;
       if (right_sign) continue;
       features.col(k).setZero();  // the ridge then makes its weight zero
@@ -275,10 +289,10 @@ AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compi
   model.bias = fit.bias;
   // Without a single right pose to go by, nothing is given up early.
   if (!all.starts.empty()) {
-    model.least_quality = kReserve * *std::min_element(all.qualities.begin(), all.qualities.end());
+    model.least_quality = kQualityReserve * *std::min_element(all.qualities.begin(), all.qualities.end());
     double least = 1.0;
     for (const Features& start : all.starts) least = std::min(least, probability_right(model, start));
-    model.least_probability = kReserve * least / (1.0 - least + kReserve * least);  // the odds
+    model.least_probability = kOddsReserve * least / (1.0 - least + kOddsReserve * least);  // the odds
   }
   model.samples = static_cast<int>(samples);
   return model;

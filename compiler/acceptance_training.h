@@ -10,9 +10,12 @@
 namespace foresight {
 
 struct AcceptanceTrainingOptions {
-  int scenes = 24;           // simulated. Limit: >= 3, one of each kind.
-  int most_hypotheses = 40;  // looked at in a scene, most likely first. Limit: >= 1.
-  int most_refined = 4;      // of them. Limit: >= 1.
+  int scenes = 32;  // simulated. Limit: >= 4, one of each kind.
+  // Of the starts in a scene, best looking first, so many are looked at, and of these so many refined near the true
+  // pose and so many elsewhere. Limit: >= 1.
+  int most_starts = 60;
+  int most_near = 3;
+  int most_far = 8;
   std::uint64_t seed = 1;
 };
 

@@ -103,6 +103,8 @@ void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
   message.set_missing_share(acceptance.weights[kMissingShare]);
   message.set_hidden_share(acceptance.weights[kHiddenShare]);
   message.set_found_pieces(acceptance.weights[kFoundPieces]);
+  message.set_amount(acceptance.weights[kAmount]);
+  message.set_other_surfaces(acceptance.weights[kOtherSurfaces]);
   message.set_bias(acceptance.bias);
   message.set_least_quality(acceptance.least_quality);
   message.set_least_probability(acceptance.least_probability);

@@ -301,6 +301,28 @@ std::vector<int> cells_by_face(const SimulatedScan& scan, int object, std::size_
   return cells;
 }
 
+// The sensor with as many more rows and columns as it takes to see the whole object: what lies beyond the image is not
+// visible.
+SensorModel with_room_for(const CadModel& model, const Pose& T_sensor_model, SensorModel sensor) {
+  PinholeCamera& camera = sensor.camera;
+  Eigen::Vector2d low(0.0, 0.0);
+  Eigen::Vector2d high(camera.columns - 1.0, camera.rows - 1.0);
+  for (const Eigen::Vector3d& vertex : model.vertices) {
+    const Eigen::Vector3d point = T_sensor_model * vertex;
+    if (!(point.z() > 0.0)) continue;
+    low = low.cwiseMin(camera.project(point));
+    high = high.cwiseMax(camera.project(point));
+  }
+  const auto cells = [](double value) { return static_cast<int>(std::ceil(std::min(value, 1.0 * kLargestImageSide))); };
+  const int left = cells(-low.x());
+  const int top = cells(-low.y());
+  camera.columns = std::min(kLargestImageSide, left + 1 + cells(high.x()));
+  camera.rows = std::min(kLargestImageSide, top + 1 + cells(high.y()));
+  camera.cx += left;
+  camera.cy += top;
+  return sensor;
+}
+
 // Compares each object's cells with those it would have alone. Noise decides about no cell, so it is left out there.
 void measure_visibility(const std::vector<CadModel>& models, SensorModel sensor, Scene& scene) {
   sensor.depth_noise = 0.0;
@@ -309,7 +331,8 @@ void measure_visibility(const std::vector<CadModel>& models, SensorModel sensor,
     const CadModel& model = models[static_cast<std::size_t>(object.model)];
     const auto seen = cells_by_face(scene.scan, static_cast<int>(i), model.faces.size());
     const PlacedObject lone{&model, object.T_sensor_model};
-    const auto alone = cells_by_face(SimulatedScene({&lone, 1}).scan(sensor, Random(0)), 0, model.faces.size());
+    const SensorModel wide = with_room_for(model, object.T_sensor_model, sensor);
+    const auto alone = cells_by_face(SimulatedScene({&lone, 1}).scan(wide, Random(0)), 0, model.faces.size());
     const int seen_cells = std::accumulate(seen.begin(), seen.end(), 0);
     const int lone_cells = std::accumulate(alone.begin(), alone.end(), 0);
     object.visible_fraction = lone_cells == 0 ? 0.0 : std::min(1.0, static_cast<double>(seen_cells) / lone_cells);

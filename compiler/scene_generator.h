@@ -25,7 +25,7 @@ void check(const SceneOptions& options, std::size_t models);
 struct SceneObject {
   int model = 0;  // index into the models given
   Pose T_sensor_model;
-  double visible_fraction = 0.0;  // data cells on the object / cells it would have alone, same sensor
+  double visible_fraction = 0.0;  // data cells on the object / cells it would have alone in an image that holds all of it
   int visible_faces = 0;          // faces with at least 12 cells
 };
 

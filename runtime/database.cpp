@@ -151,6 +151,8 @@ AcceptanceModel from_message(const v1::AcceptanceModel& message) {
   acceptance.weights[kMissingShare] = message.missing_share();
   acceptance.weights[kHiddenShare] = message.hidden_share();
   acceptance.weights[kFoundPieces] = message.found_pieces();
+  acceptance.weights[kAmount] = message.amount();
+  acceptance.weights[kOtherSurfaces] = message.other_surfaces();
   acceptance.bias = message.bias();
   acceptance.least_quality = message.least_quality();
   acceptance.least_probability = message.least_probability();

@@ -22,9 +22,8 @@ bool HypothesisQueue::Node::operator<(const Node& other) const {
          std::tuple(other.bound, -other.a, -other.b, -other.model, -other.match_a, -other.match_b);
 }
 
-HypothesisQueue::HypothesisQueue(const std::vector<RegionMatches>& matches,
-                                 const std::vector<DescribedRegion>& regions, const Database& database,
-                                 const MatchRater& rater, RegionRelations& relations)
+HypothesisQueue::HypothesisQueue(const std::vector<RegionMatches>& matches, const std::vector<DescribedRegion>& regions,
+                                 const Database& database, const MatchRater& rater, RegionRelations& relations)
     : matches_(matches),
       regions_(regions),
       database_(database),

@@ -12,7 +12,7 @@
 namespace foresight {
 
 struct MatchPair {
-  RatedMatch a;         // of one model, of two regions and two faces
+  RatedMatch a;  // of one model, of two regions and two faces
   RatedMatch b;
   double rating = 0.0;  // of both matches and of the pair
 };
@@ -28,8 +28,9 @@ class RegionRelations {
   std::vector<std::optional<RelationVector>> known_;  // lower triangle
 };
 
-// Best first by a heap of bounds: two regions may be rated no higher than their best matches and the best pair there is;
-// two regions and a model no higher than their best matches of that model. What leads is taken apart until it is a pair.
+// Best first by a heap of bounds: two regions may be rated no higher than their best matches and the best pair there
+// is; two regions and a model no higher than their best matches of that model. What leads is taken apart until it is a
+// pair.
 class HypothesisQueue {
  public:
   // All must outlive the queue.
@@ -49,10 +50,10 @@ class HypothesisQueue {
   };
   struct Node {
     double bound = 0.0;
-    int a = 0;                // regions
+    int a = 0;  // regions
     int b = 0;
-    int model = -1;           // -1: any
-    int match_a = -1;         // among the matches of the region; -1: any
+    int model = -1;    // -1: any
+    int match_a = -1;  // among the matches of the region; -1: any
     int match_b = -1;
     bool operator<(const Node& other) const;
   };

@@ -7,9 +7,9 @@
 namespace foresight {
 namespace {
 
-constexpr double kDoubt = 30.0;          // cells against every pose, as in evidence_features
-constexpr std::size_t kFewestOfFace = 4; // samples of a face in sight, if it has as many
-constexpr double kStay = 0.02;           // weight of the pose as it is, against 1 for all planes together
+constexpr double kDoubt = 30.0;           // cells against every pose, as in evidence_features
+constexpr std::size_t kFewestOfFace = 4;  // samples of a face in sight, if it has as many
+constexpr double kStay = 0.02;            // weight of the pose as it is, against 1 for all planes together
 constexpr double kLeastShare = 1.0 / 3.0;
 
 void add_support(std::vector<FaceSupport>& supports, int region, int face, double cells) {
@@ -52,12 +52,14 @@ std::vector<PoseChecker::Sample> PoseChecker::choose_samples(const CompiledModel
       }
     }
   }
-  const double keep = std::min(1.0, static_cast<double>(options_.samples) / static_cast<double>(std::max<std::size_t>(1, in_sight)));
+  const double keep =
+      std::min(1.0, static_cast<double>(options_.samples) / static_cast<double>(std::max<std::size_t>(1, in_sight)));
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const std::vector<int>& points = of_face[f];
     const auto wanted = static_cast<std::size_t>(std::lround(keep * static_cast<double>(points.size())));
     const std::size_t count = std::min(points.size(), std::max(wanted, kFewestOfFace));
-    const auto area = static_cast<float>(model.faces[static_cast<std::size_t>(faces[f])].area / static_cast<double>(std::max<std::size_t>(1, count)));
+    const auto area = static_cast<float>(model.faces[static_cast<std::size_t>(faces[f])].area /
+                                         static_cast<double>(std::max<std::size_t>(1, count)));
     for (std::size_t k = 0; k < count; ++k) {
       const auto point = static_cast<std::size_t>(points[(2 * k + 1) * points.size() / (2 * count)]);
       chosen.push_back({model.surface.points[point].position, faces[f], area});
@@ -139,7 +141,7 @@ Pose refit_to_planes(const CompiledModel& model, const Pose& T_sensor_model, con
   for (const FaceSupport& support : check.supports) {
     const Region& region = regions[static_cast<std::size_t>(support.region)].region;
     if (support.cells < kLeastShare * static_cast<double>(region.cells.size())) continue;
-    planes.push_back({&region, &model.faces[static_cast<std::size_t>(support.face)], std::sqrt(support.cells)});
+    planes.push_back({&region, &model.faces[static_cast<std::size_t>(support.face)], support.cells});
     weights += planes.back().weight;
   }
   if (planes.empty()) return T_sensor_model;

@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kDoubt = 30.0;   // cells against every pose, so that a handful of cells for it makes none certain
 constexpr int kFewestCells = 12;  // that say something about a triangle
+constexpr double kMuch = 300.0;   // owned cells at which the amount is a half
+constexpr double kLeftByLocalization = 0.8;  // Unit: mm.
+constexpr double kLeastDistance = 1.5;       // Unit: mm.
 
 // Whether all eight neighbours show the same surface going on: no outline and no inner edge of depth.
 bool inner(const Rendering& drawn, int row, int column, double step) {
@@ -92,7 +95,14 @@ class Tally {
     }
   }
 
-  [[nodiscard]] PoseEvidence sum(const std::vector<DescribedRegion>& regions) {
+  // triangle_faces: empty where unknown; then each triangle is a face.
+  [[nodiscard]] PoseEvidence sum(const std::vector<DescribedRegion>& regions, const std::vector<int>& triangle_faces) {
+    std::vector<int> of_face(of_triangle_.size(), 0);
+    for (std::size_t t = 0; t < of_triangle_.size(); ++t) {
+      const std::size_t face = triangle_faces.empty() ? t : static_cast<std::size_t>(triangle_faces[t]);
+      of_face[face] += of_triangle_[t].explained;
+      evidence_.largest = std::max(evidence_.largest, of_face[face]);
+    }
     for (std::size_t r = 0; r < regions.size(); ++r) {
       const auto cells = static_cast<double>(regions[r].region.cells.size());
       evidence_.owned += inner_of_region_[r] * std::min(1.0, evidence_.explained_of_region[r] / cells);
@@ -117,6 +127,10 @@ class Tally {
 
 }  // namespace
 
+double agreeing_distance(const SensorModel& sensor) {
+  return std::max(kLeastDistance, kLeftByLocalization + 3.0 * sensor.depth_sigma());
+}
+
 LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
                         const std::vector<DescribedRegion>& regions) {
   LabelledScan scan{image,
@@ -134,12 +148,15 @@ LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, co
 
 std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence) {
   const double drawn = std::max(1, evidence.drawn);
+  const double open = std::max(1, evidence.drawn - evidence.front);
   std::array<double, kEvidenceFeatureCount> features{};
   features[kOwnedShare] = evidence.owned / (kDoubt + evidence.explained + evidence.behind + evidence.tilted);
-  features[kContradictedShare] = (evidence.behind + evidence.tilted) / drawn;
-  features[kMissingShare] = evidence.missing / drawn;
+  features[kContradictedShare] = (evidence.behind + evidence.tilted) / open;
+  features[kMissingShare] = evidence.missing / open;
   features[kHiddenShare] = evidence.front / drawn;
   features[kFoundPieces] = static_cast<double>(evidence.pieces_found) / std::max(1, evidence.pieces);
+  features[kAmount] = evidence.owned / (kMuch + evidence.owned);
+  features[kOtherSurfaces] = 1.0 - static_cast<double>(evidence.largest) / std::max(1, evidence.explained);
   return features;
 }
 
@@ -169,7 +186,7 @@ PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_mo
                 inner(drawn, row, column, options.distance + 3.0 * step));
     }
   }
-  return tally.sum(scan.regions);
+  return tally.sum(scan.regions, model.triangle_faces);
 }
 
 }  // namespace foresight

@@ -31,8 +31,12 @@ struct LabelledScan {
 [[nodiscard]] LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
                                       const std::vector<DescribedRegion>& regions);
 
+// Data of a surface at its place are nearer than this to it: three standard deviations of the sensor, and what
+// localization leaves. Unit: mm.
+[[nodiscard]] double agreeing_distance(const SensorModel& sensor);
+
 struct EvidenceOptions {
-  double distance = 4.0;  // data this near to the drawn surface, across it, agree: 2 sigma, Section V.C. Unit: mm.
+  double distance = 4.0;        // data this near to the drawn surface, across it, agree. Unit: mm.
   double normal_cosine = 0.87;  // of a region's normal with that of the surface it lies on. 30 degrees.
 };
 
@@ -44,6 +48,7 @@ struct PoseEvidence {
   int behind = 0;        // data behind the surface: the sensor saw through it
   int front = 0;         // data before the surface: hidden by something
   int missing = 0;       // no data
+  int largest = 0;       // explained cells of the face, or triangle, with most of them
   double owned = 0.0;    // explained cells, each counting the share of its region that the object explains
   int pieces = 0;        // drawn triangles with at least 12 cells whose data say something: not missing, not hidden
   int pieces_found = 0;  // of them, those of which at least half of these cells are explained

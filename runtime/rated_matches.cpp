@@ -8,7 +8,8 @@
 namespace foresight {
 namespace {
 
-// Density at a value, spread over the neighbouring bins: a sample near the edge of a bin might as well have been beyond.
+// Density at a value, spread over the neighbouring bins: a sample near the edge of a bin might as well have been
+// beyond.
 double smooth_density(const Density& density, double value) {
   const double near = density.probability(value - density.bin_width) + density.probability(value + density.bin_width);
   return (0.5 * density.probability(value) + 0.25 * near) / density.bin_width;

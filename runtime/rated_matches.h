@@ -1,5 +1,6 @@
-// How much an image speaks for region i showing face j, and for two such matches being one object: log-likelihood ratios
-// of the compiled statistics against a background that knows nothing (Section III, eqs. (4) and (5), beyond the paper).
+// How much an image speaks for region i showing face j, and for two such matches being one object: log-likelihood
+// ratios of the compiled statistics against a background that knows nothing (Section III, eqs. (4) and (5), beyond the
+// paper).
 //
 // Unlike the product of eq. (4) a ratio never is zero: one attribute outside of what 320 views showed makes a match
 // improbable, not impossible. And attributes of a region that something cuts off are lower bounds.
@@ -14,9 +15,9 @@
 namespace foresight {
 
 struct RatingOptions {
-  double cut_share = 0.08;    // regions with more of their boundary cut are parts of faces. Limit: 0 to 1.
-  double least_ratio = 0.01;  // of a probability to that of the background: what training never showed. Limit: > 0.
-  double least_rating = -3.0; // of a match worth thinking of
+  double cut_share = 0.08;     // regions with more of their boundary cut are parts of faces. Limit: 0 to 1.
+  double least_ratio = 0.01;   // of a probability to that of the background: what training never showed. Limit: > 0.
+  double least_rating = -3.0;  // of a match worth thinking of
 };
 
 struct RatedMatch {

@@ -23,7 +23,6 @@ std::vector<Label> prune(const HypothesisField& field, Pruning pruning) {
 LocalizationOptions localization_options(const RecognizeOptions& options) {
   LocalizationOptions localization;
   localization.loss = options.loss;
-  if (options.method == Method::two_way) localization.reach = kTwoWayReach;
   return localization;
 }
 

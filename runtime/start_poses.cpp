@@ -11,9 +11,9 @@
 namespace foresight {
 namespace {
 
-constexpr double kSameEnd = 3.0;     // shifts nearer than this are one start. Unit: mm.
-constexpr double kReach = 6.0;       // a region may seem to reach this far beyond its face, and
-constexpr double kReachShare = 0.08; // this share of the face. Unit: mm, 1.
+constexpr double kSameEnd = 3.0;      // shifts nearer than this are one start. Unit: mm.
+constexpr double kReach = 6.0;        // a region may seem to reach this far beyond its face, and
+constexpr double kReachShare = 0.08;  // this share of the face. Unit: mm, 1.
 
 struct Interval {
   double low = std::numeric_limits<double>::max();
@@ -42,7 +42,8 @@ Interval posed_extent(const std::vector<Eigen::Vector3d>& points, const Pose& po
 }
 
 // Directions of the hull's sides; hulls given as any points yield all that matter through their extreme ones.
-std::vector<Eigen::Vector3d> side_directions(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal) {
+std::vector<Eigen::Vector3d> side_directions(const std::vector<Eigen::Vector3d>& points,
+                                             const Eigen::Vector3d& normal) {
   // Gift wrapping in the plane: few points, and exact ones need no sorting.
   std::vector<Eigen::Vector3d> directions;
   const Eigen::Vector3d helper = std::abs(normal.x()) < 0.6 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
@@ -69,7 +70,8 @@ std::vector<Eigen::Vector3d> side_directions(const std::vector<Eigen::Vector3d>&
   return directions;
 }
 
-// The pose that takes a face's frame to a region's; `axis` is where the face's axis points, `from` comes to lie on `to`.
+// The pose that takes a face's frame to a region's; `axis` is where the face's axis points, `from` comes to lie on
+// `to`.
 Pose laid(const PatchFrame& face, const Eigen::Vector3d& face_axis, const Eigen::Vector3d& normal,
           const Eigen::Vector3d& axis, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Eigen::Matrix3d model_axes;
@@ -145,7 +147,8 @@ FaceShapes::FaceShapes(const Database& database) {
     for (std::size_t f = 0; f < shapes.size(); ++f) {
       std::sort(indices[f].begin(), indices[f].end());
       indices[f].erase(std::unique(indices[f].begin(), indices[f].end()), indices[f].end());
-      for (const int i : indices[f]) shapes[f].vertices.push_back(model.vertices[static_cast<std::size_t>(i)].cast<double>());
+      for (const int i : indices[f])
+        shapes[f].vertices.push_back(model.vertices[static_cast<std::size_t>(i)].cast<double>());
       if (!shapes[f].vertices.empty()) shapes[f].frame = smallest_rectangle(shapes[f].vertices, model.faces[f].normal);
       if (!shapes[f].vertices.empty()) shapes[f].major_axis = larger_second_moment(model, static_cast<int>(f));
     }
@@ -155,13 +158,16 @@ FaceShapes::FaceShapes(const Database& database) {
 const FaceShapes::Shape& FaceShapes::shape(int model, int face) const {
   return shapes_[static_cast<std::size_t>(model)][static_cast<std::size_t>(face)];
 }
-const std::vector<Eigen::Vector3d>& FaceShapes::vertices(int model, int face) const { return shape(model, face).vertices; }
+const std::vector<Eigen::Vector3d>& FaceShapes::vertices(int model, int face) const {
+  return shape(model, face).vertices;
+}
 const PatchFrame& FaceShapes::frame(int model, int face) const { return shape(model, face).frame; }
 const Eigen::Vector3d& FaceShapes::major_axis(int model, int face) const { return shape(model, face).major_axis; }
 
 ScanRegions frame_regions(const std::vector<DescribedRegion>& regions) {
   ScanRegions scan{regions, {}};
-  for (const DescribedRegion& region : regions) scan.frames.push_back(smallest_rectangle(region.hull, region.region.normal));
+  for (const DescribedRegion& region : regions)
+    scan.frames.push_back(smallest_rectangle(region.hull, region.region.normal));
   return scan;
 }
 
@@ -222,7 +228,8 @@ std::vector<Pose> single_starts(const Database& database, const FaceShapes& shap
       if (same_along && a > 0.0) continue;  // both ends coincide
       for (const double b : {-1.0, 1.0}) {
         if (same_across && b > 0.0) continue;
-        starts.push_back(laid(face, face.axis, seen.normal, axis, corner(face, face.axis, a * face.extents[0], b * face.extents[1]),
+        starts.push_back(laid(face, face.axis, seen.normal, axis,
+                              corner(face, face.axis, a * face.extents[0], b * face.extents[1]),
                               corner(seen, axis, a * along, b * across)));
       }
     }

@@ -1,8 +1,8 @@
 // Start poses of hypotheses: where two, three or even one matched region may put the object.
 //
-// A part of a face tells its plane as well as the whole does, but not its middle. So what planes leave free is not taken
-// from centroids alone: every end at which region and face may both end makes a start of its own, and looking at them
-// (pose_check.h) decides.
+// A part of a face tells its plane as well as the whole does, but not its middle. So what planes leave free is not
+// taken from centroids alone: every end at which region and face may both end makes a start of its own, and looking at
+// them (pose_check.h) decides.
 #pragma once
 
 #include <array>
@@ -53,12 +53,12 @@ struct ScanRegions {
 
 // Rotation from the normals; along the line both planes leave free, starts at which the centroids coincide on average,
 // or an end of either region with that of its face. Empty when the matches do not determine a pose.
-[[nodiscard]] std::vector<Pose> pair_starts(const Database& database, const FaceShapes& shapes,
-                                            const ScanRegions& scan, const MatchPair& pair);
+[[nodiscard]] std::vector<Pose> pair_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,
+                                            const MatchPair& pair);
 
-// All symmetric ways to lay the face on the region's plane: smallest rectangles with each other, their centres or, where
-// the region is cut, one of their corners together; where it is whole, also the principal axes with each other. None
-// when the region reaches beyond the face.
+// All symmetric ways to lay the face on the region's plane: smallest rectangles with each other, their centres or,
+// where the region is cut, one of their corners together; where it is whole, also the principal axes with each other.
+// None when the region reaches beyond the face.
 [[nodiscard]] std::vector<Pose> single_starts(const Database& database, const FaceShapes& shapes,
                                               const ScanRegions& scan, const RatedMatch& match, bool cut);
 

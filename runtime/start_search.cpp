@@ -88,9 +88,8 @@ class StartSearch {
       consider(best, check, pose, {pair.a.region, pair.b.region});
     }
     for (const RatedMatch& third : thirds(pair)) {
-      const std::array<RegionFaceMatch, 3> matches = {{{&region(pair.a), &face(pair.a)},
-                                                       {&region(pair.b), &face(pair.b)},
-                                                       {&region(third), &face(third)}}};
+      const std::array<RegionFaceMatch, 3> matches = {
+          {{&region(pair.a), &face(pair.a)}, {&region(pair.b), &face(pair.b)}, {&region(third), &face(third)}}};
       const std::optional<Pose> pose = pose_from_matches(matches);
       if (pose) consider(best, check, *pose, {pair.a.region, pair.b.region, third.region});
     }

@@ -1,7 +1,8 @@
 // From rated matches to start poses worth refining, the best looking first.
 //
 // Beyond the paper, which refines hypotheses in the order of their energy: the energy knows attributes, not the image.
-// Here hypotheses come best rated first, each is looked at where it puts the object, and what is seen there orders them.
+// Here hypotheses come best rated first, each is looked at where it puts the object, and what is seen there orders
+// them.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,7 @@
 #include "runtime/two_way_search.h"
 
 #include <algorithm>
+#include <map>
 
 #include "runtime/pose_check.h"
 #include "runtime/pose_evidence.h"
@@ -8,6 +9,9 @@
 
 namespace foresight {
 namespace {
+
+constexpr int kSettlings = 3;
+constexpr double kLocalizationError = 1.0;  // one step. Unit: mm.
 
 // A refined pose that may be reported.
 struct Candidate {
@@ -25,7 +29,8 @@ class TwoWaySearch {
         two_way_(two_way),
         result_(result),
         labelled_(label_scan(scan.image, scan.camera, scan.database.content().sensor, scan.regions)),
-        checker_(scan.database, labelled_) {}
+        checker_(scan.database, labelled_),
+        settling_(scan.database, labelled_, settling_options(labelled_.sensor)) {}
 
   void run(const Deadline& deadline) {
     StartSearchCounts counts;
@@ -50,7 +55,17 @@ class TwoWaySearch {
                        [&](int region) { return labelled_.taken[static_cast<std::size_t>(region)]; });
   }
   [[nodiscard]] PoseEvidence evidence(const Candidate& candidate) const {
-    return gather_evidence(model(starts_[candidate.start]), candidate.refined.localization.T_sensor_model, labelled_);
+    EvidenceOptions fine;
+    fine.distance = agreeing_distance(labelled_.sensor);
+    return gather_evidence(model(starts_[candidate.start]), candidate.refined.localization.T_sensor_model, labelled_,
+                           fine);
+  }
+  // Counts tries of the same regions with one model.
+  bool tried_enough(const StartPose& start) {
+    std::vector<int> key = start.regions;
+    std::sort(key.begin(), key.end());
+    key.push_back(start.model);
+    return ++tries_[key] > two_way_.most_tries;
   }
 
   void try_start(std::size_t i) {
@@ -61,12 +76,19 @@ class TwoWaySearch {
     const double quality = checker_.check(start.model, start.T_sensor_model).quality();
     EvidenceOptions rough;
     rough.distance = two_way_.start_distance;
-    const bool worth = quality >= compiled.acceptance.least_quality &&
-                       probability_right(compiled.acceptance, gather_evidence(compiled, start.T_sensor_model, labelled_,
-                                                                              rough)) >= compiled.acceptance.least_probability;
+    const bool worth =
+        quality >= compiled.acceptance.least_quality &&
+        probability_right(compiled.acceptance, gather_evidence(compiled, start.T_sensor_model, labelled_, rough)) >=
+            compiled.acceptance.least_probability;
     watch_.lap(result_.milliseconds.verify);
     if (!worth) return;
-    Candidate candidate{i, refine(scan_, compiled, start.T_sensor_model, options_, result_, watch_), 0.0};
+    if (tried_enough(start)) return;
+    Candidate candidate{i, {}, 0.0};
+    candidate.refined.localization =
+        localize_and_settle(compiled, start.model, start.T_sensor_model, scan_, labelled_, options_, settling_);
+    ++result_.statistics.verifications;
+    result_.statistics.energy_evaluations += candidate.refined.localization.energy_evaluations;
+    watch_.lap(result_.milliseconds.localize);
     candidate.probability = probability_right(compiled.acceptance, evidence(candidate));
     watch_.lap(result_.milliseconds.verify);
     if (candidate.probability >= two_way_.sure) {
@@ -80,7 +102,10 @@ class TwoWaySearch {
   void accept(const Candidate& candidate) {
     const StartPose& start = starts_[candidate.start];
     const Pose& pose = candidate.refined.localization.T_sensor_model;
-    Detection detection = to_detection(model(start), candidate.refined);
+    RefinedPose refined = candidate.refined;
+    refined.verification =
+        verify(model(start), scan_.sphere, pose, scan_.image, scan_.camera, scan_.data, verification_options(options_));
+    Detection detection = to_detection(model(start), refined);
     detection.rank = static_cast<int>(candidate.start) + 1;
     detection.score = candidate.probability;
     list_supports(start.model, pose, detection);
@@ -126,12 +151,40 @@ class TwoWaySearch {
   RecognitionResult& result_;
   LabelledScan labelled_;
   PoseChecker checker_;
+  PoseChecker settling_;
   std::vector<StartPose> starts_;
   std::vector<Candidate> candidates_;
+  std::map<std::vector<int>, int> tries_;  // by regions and model
   Stopwatch watch_;
 };
 
 }  // namespace
+
+PoseCheckOptions settling_options(const SensorModel& sensor) {
+  PoseCheckOptions options;
+  options.distance = kLocalizationError + agreeing_distance(sensor);
+  return options;
+}
+
+Localization localize_and_settle(const CompiledModel& model, int model_index, const Pose& start,
+                                 const ScanContext& scan, const LabelledScan& labelled, const RecognizeOptions& options,
+                                 PoseChecker& checker) {
+  LocalizationOptions localization = localization_options(options);
+  localization.reach = kTwoWayReach;
+  Localization localized = localize(model, scan.sphere, start, scan.data, localization);
+  Pose settled = localized.T_sensor_model;
+  for (int i = 0; i < kSettlings; ++i) {
+    settled = refit_to_planes(model, settled, checker.check(model_index, settled), scan.regions);
+  }
+  EvidenceOptions fine;
+  fine.distance = agreeing_distance(labelled.sensor);
+  const auto balance = [&](const Pose& pose) {
+    const PoseEvidence evidence = gather_evidence(model, pose, labelled, fine);
+    return evidence.owned - evidence.behind - evidence.tilted - evidence.front;
+  };
+  if (balance(settled) > balance(localized.T_sensor_model)) localized.T_sensor_model = settled;
+  return localized;
+}
 
 void search_two_way(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,
                     RecognitionResult& result, const TwoWayOptions& two_way) {
