@@ -8,9 +8,9 @@
 #include <functional>
 #include <vector>
 
-#include "benchmarks/symmetries.h"
 #include "common/pose.h"
 #include "compiler/cad_model.h"
+#include "compiler/symmetries.h"
 
 namespace foresight {
 
