@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/canonical_pose.h"
 #include "runtime/pose_from_matches.h"
 
 namespace foresight {
@@ -35,14 +36,20 @@ RefinedPose refine(const ScanContext& scan, const ObjectHypothesis& hypothesis, 
 }
 
 Detection make_detection(const ScanContext& scan, const ObjectHypothesis& hypothesis, const RefinedPose& refined,
-                         int rank) {
-  Detection detection = to_detection(scan.model(hypothesis), refined);
+                         int rank, EquivalentPose pose) {
+  const CompiledModel& model = scan.model(hypothesis);
+  CanonicalPose chosen{refined.localization.T_sensor_model, Pose{}};
+  if (pose == EquivalentPose::canonical) chosen = canonical_choice(model, refined.localization.T_sensor_model);
+  RefinedPose reported = refined;
+  reported.localization.T_sensor_model = chosen.T_sensor_model;
+  Detection detection = to_detection(model, reported);
   detection.rank = rank;
   for (const int index : hypothesis.matches) {
     const Match& match = scan.match(index);
     detection.faces.push_back(scan.database.faces()[static_cast<std::size_t>(match.face)].face);
     detection.regions.push_back(match.region);
   }
+  detection.faces = moved_faces(model, detection.faces, chosen.T_model_model);
   return detection;
 }
 

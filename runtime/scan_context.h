@@ -55,9 +55,14 @@ class Stopwatch {
 [[nodiscard]] RefinedPose refine(const ScanContext& scan, const ObjectHypothesis& hypothesis, const Pose& start,
                                  const RecognizeOptions& options, RecognitionResult& result, Stopwatch& watch);
 
-// A refined pose with the hypothesis it came of. rank: from 1.
+// Which of the equivalent poses of a symmetric object a detection holds.
+enum class EquivalentPose { canonical, as_found };
+
+// A refined pose with the hypothesis it came of. rank: from 1. Where the canonical pose is another one than the refined
+// one, the faces are those that lie at it where the matched ones lay: faces[i] is in sight as regions[i] either way.
 [[nodiscard]] Detection make_detection(const ScanContext& scan, const ObjectHypothesis& hypothesis,
-                                       const RefinedPose& refined, int rank);
+                                       const RefinedPose& refined, int rank,
+                                       EquivalentPose pose = EquivalentPose::canonical);
 
 // Whether the limits of the options or the deadline end the search.
 [[nodiscard]] bool limits_reached(const RecognizeOptions& options, const Deadline& deadline, RecognitionResult& result);

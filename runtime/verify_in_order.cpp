@@ -16,7 +16,8 @@ void verify_in_order(const ScanContext& scan, const std::vector<ObjectHypothesis
     if (!start) continue;
     const RefinedPose refined = refine(scan, hypothesis, *start, options, result, watch);
     if (!refined.verification.accepted) continue;
-    result.detections.push_back(make_detection(scan, hypothesis, refined, static_cast<int>(i) + 1));
+    result.detections.push_back(
+        make_detection(scan, hypothesis, refined, static_cast<int>(i) + 1, EquivalentPose::as_found));
     for (const int region : result.detections.back().regions) taken[static_cast<std::size_t>(region)] = true;
     for (const int region :
          explained_regions(scan.model(hypothesis), refined.localization.T_sensor_model, scan.image, scan.regions)) {
