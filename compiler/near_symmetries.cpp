@@ -83,6 +83,8 @@ class Search {
     std::erase_if(motions,
                   [&](const Motion& motion) { return motion.overlap.share < options_.least_overlap || rises(motion); });
     motions = best_apart(std::move(motions), static_cast<std::size_t>(options_.most));
+    std::stable_sort(motions.begin(), motions.end(),
+                     [](const Motion& a, const Motion& b) { return a.overlap.share > b.overlap.share; });
     std::vector<Symmetry> symmetries;
     for (const Motion& motion : motions) symmetries.push_back({motion.pose, false, motion.overlap.share});
     return symmetries;

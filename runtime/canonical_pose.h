@@ -27,8 +27,8 @@ struct CanonicalPose {
 [[nodiscard]] std::vector<int> moved_faces(const CompiledModel& model, const std::vector<int>& faces,
                                            const Pose& T_model_model);
 
-// The poses T * N, N a near symmetry of the model, those with the most overlap first: what else to look at when T fits.
-// Of motions that differ by an exact symmetry alone, one is in the list.
+// The poses T * N, N a near symmetry of the model, most overlap first: what else to look at when T fits. Of poses that
+// differ by an exact symmetry alone, one is in the list.
 [[nodiscard]] std::vector<Pose> near_symmetric_poses(const CompiledModel& model, const Pose& T_sensor_model);
 
 }  // namespace foresight

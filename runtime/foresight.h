@@ -37,7 +37,7 @@ struct Detection {
   double coherent = 0.0;                   // beta
   double occluding = 0.0;                  // gamma
   int rank = 0;                            // place of its hypothesis in the ordered list, from 1
-  std::vector<int> faces;                  // faces of the hypothesis, and
+  std::vector<int> faces;                  // faces of the hypothesis, as they lie at this pose, and
   std::vector<int> regions;                // the regions they were matched with (Fig. 9's first column counts regions)
   std::vector<Alternative> ambiguous_with;  // other poses or objects that this view fits equally well; mostly none
 };

@@ -50,9 +50,14 @@ TEST(NearSymmetries, of_a_block_with_one_chamfer_are_the_turns_that_lay_it_elsew
   }
 }
 
-TEST(NearSymmetries, are_fewer_the_larger_the_mark) {
-  EXPECT_GT(near_of(chamfered_block(10.0)).front().overlap, near_of(chamfered_block(20.0)).front().overlap);
-  EXPECT_TRUE(near_of(chamfered_block(59.0)).empty());
+TEST(NearSymmetries, overlap_less_the_larger_the_mark) {
+  double before = 1.0;
+  for (const double cut : {10.0, 20.0, 30.0}) {
+    const std::vector<Symmetry> near = near_of(chamfered_block(cut));
+    ASSERT_FALSE(near.empty()) << cut;
+    EXPECT_LT(near.front().overlap, before) << cut;
+    before = near.front().overlap;
+  }
 }
 
 TEST(NearSymmetries, of_what_has_none_are_none) {
@@ -109,6 +114,17 @@ TEST(NearSymmetries, move_with_the_object) {
     };
     EXPECT_TRUE(std::any_of(here.begin(), here.end(), same));
   }
+}
+
+TEST(NearSymmetries, come_in_the_order_of_their_overlap) {
+  const std::vector<Symmetry> near = near_of(chamfered_block(15.0));
+  EXPECT_GT(near.size(), 1U);
+  for (const Symmetry& symmetry : near) {
+    EXPECT_GE(symmetry.overlap, NearSymmetryOptions{}.least_overlap);
+    EXPECT_LE(symmetry.overlap, near.front().overlap);
+  }
+  EXPECT_TRUE(std::is_sorted(near.begin(), near.end(),
+                             [](const Symmetry& a, const Symmetry& b) { return a.overlap > b.overlap; }));
 }
 
 TEST(NearSymmetries, are_the_same_every_time) {
