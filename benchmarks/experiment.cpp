@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 
@@ -38,13 +39,13 @@ std::vector<std::string> paper_objects() {
   return files;
 }
 
-Pose pose_of(const Detection& detection) {
+Pose pose_of(const std::array<double, 16>& T) {
   Pose pose;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      pose.rotation(row, column) = detection.T_sensor_model[static_cast<std::size_t>(4 * row + column)];
+      pose.rotation(row, column) = T[static_cast<std::size_t>(4 * row + column)];
     }
-    pose.translation[row] = detection.T_sensor_model[static_cast<std::size_t>(4 * row + 3)];
+    pose.translation[row] = T[static_cast<std::size_t>(4 * row + 3)];
   }
   return pose;
 }
@@ -160,7 +161,10 @@ SceneRecord recognize_and_score(const Bench& bench, const Contestant& contestant
   record.name = scan.name;
   record.truth = scan.truth;
   for (const Detection& detection : result.detections) {
-    record.reported.push_back({object_named(bench.models, detection.object), pose_of(detection)});
+    ReportedObject report{object_named(bench.models, detection.object), pose_of(detection.T_sensor_model)};
+    for (const Alternative& other : detection.ambiguous_with)
+      report.alternatives.push_back({object_named(bench.models, other.object), pose_of(other.T_sensor_model)});
+    record.reported.push_back(std::move(report));
     record.ranks.push_back(detection.rank);
     record.scores.push_back(detection.score);
   }

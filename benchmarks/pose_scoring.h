@@ -8,9 +8,9 @@
 #include <functional>
 #include <vector>
 
-#include "benchmarks/symmetries.h"
 #include "common/pose.h"
 #include "compiler/cad_model.h"
+#include "compiler/symmetries.h"
 
 namespace foresight {
 
@@ -37,31 +37,39 @@ struct TrueObject {
   double visible_fraction = 1.0;
 };
 
-struct ReportedObject {
-  int object = -1;  // -1: an object that is not scored, always a false positive
+struct PosedObject {
+  int object = -1;  // index into the objects scored; -1: an object that is not scored, never right
   Pose T_sensor_model;
+};
+
+struct ReportedObject {
+  int object = -1;  // -1: an object that is not scored
+  Pose T_sensor_model;
+  std::vector<PosedObject> alternatives = {};  // what the report names as equally good
 };
 
 enum class Verdict {
   missed,             // of a true object only: nothing right was reported
   right,              // right pose
-  indistinguishable,  // not right, but the view cannot tell the two poses apart
+  declared,           // not right, but one of the alternatives it names is: right object, right pose
+  indistinguishable,  // neither, but the view cannot tell the two poses apart
   wrong_pose,         // the object is there, the pose is not right
   false_positive,     // no true instance of that object within half its diameter
-  duplicate,          // right for an instance that another report has already
+  duplicate,          // right, or right by an alternative, for an instance that another report has already
 };
 
 struct SceneVerdicts {
   std::vector<Verdict> reported;  // one a report; never missed
-  std::vector<Verdict> truth;     // one a true object: right, indistinguishable or missed
-  std::vector<bool> named;        // one a true object: reported whatever its pose, each report used once
+  std::vector<Verdict> truth;     // one a true object: right, declared, indistinguishable or missed
+  std::vector<bool> named;        // one a true object: reported whatever its pose, each report used once; alternatives
+                                  // do not count
 };
 
 // Whether the view cannot tell the reported pose from the true one.
 using CannotTell = std::function<bool(int object, const Pose& reported, const Pose& truth)>;
 
-// Each true object takes at most one report, the nearest right one first, then the nearest indistinguishable one.
-// cannot_tell is asked only about pairs that are not right.
+// Each true object takes at most one report, the nearest right one first, then the one with the nearest right
+// alternative, then the nearest indistinguishable one. cannot_tell is asked only about pairs that are not right.
 [[nodiscard]] SceneVerdicts score_scene(const std::vector<ScoredObject>& objects, const std::vector<TrueObject>& truth,
                                         const std::vector<ReportedObject>& reported, const CannotTell& cannot_tell);
 

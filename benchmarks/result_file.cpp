@@ -12,13 +12,22 @@ namespace {
 
 constexpr const char* kMend = "give what `foresight recognize --format json` printed";
 
+ScanResult::Object parse_object(const nlohmann::json& json, const std::string& file) {
+  return {json.at("object").get<std::string>(), pose_from_json(json.at("pose"), file)};
+}
+
 ScanResult parse_line(const std::string& line, const std::string& file) {
   const nlohmann::json json = nlohmann::json::parse(line);
   ScanResult result;
   result.scan = json.at("scan").get<std::string>();
-  for (const auto& detection : json.at("detections"))
-    result.detections.push_back(
-        {detection.at("object").get<std::string>(), pose_from_json(detection.at("pose"), file)});
+  for (const auto& detection : json.at("detections")) {
+    ScanResult::Object object = parse_object(detection, file);
+    if (detection.contains("ambiguous_with")) {
+      for (const auto& other : detection.at("ambiguous_with"))
+        object.ambiguous_with.push_back(parse_object(other, file));
+    }
+    result.detections.push_back(std::move(object));
+  }
   return result;
 }
 

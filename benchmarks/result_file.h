@@ -12,6 +12,7 @@ struct ScanResult {
   struct Object {
     std::string object;
     Pose T_sensor_model;
+    std::vector<Object> ambiguous_with = {};  // of a detection; empty in results of versions that did not tell
   };
   std::string scan;  // the path recognize was given
   std::vector<Object> detections;

@@ -28,6 +28,7 @@ struct ShowCommand {
 struct Tally {
   int objects = 0;
   int right = 0;
+  int declared = 0;
   int indistinguishable = 0;
   int false_reports = 0;
 };
@@ -65,6 +66,8 @@ const char* words(Verdict verdict) {
       return "MISSED";
     case Verdict::right:
       return "right";
+    case Verdict::declared:
+      return "named among its alternatives";
     case Verdict::indistinguishable:
       return "right as far as the view can tell";
     case Verdict::wrong_pose:
@@ -91,11 +94,12 @@ void add_rows(Table& table, Tally& tally, const std::string& scan, const std::ve
         {scan, name(truth[i].object), decimal(100.0 * truth[i].visible_fraction, 0) + " %", found, words(verdict)});
     ++tally.objects;
     tally.right += verdict == Verdict::right ? 1 : 0;
+    tally.declared += verdict == Verdict::declared ? 1 : 0;
     tally.indistinguishable += verdict == Verdict::indistinguishable ? 1 : 0;
   }
   for (std::size_t i = 0; i < reported.size(); ++i) {
     const Verdict verdict = verdicts.reported[i];
-    if (verdict == Verdict::right || verdict == Verdict::indistinguishable) continue;
+    if (verdict == Verdict::right || verdict == Verdict::declared || verdict == Verdict::indistinguishable) continue;
     table.rows.push_back({scan, "-", "", name(reported[i].object), words(verdict)});
     ++tally.false_reports;
   }
@@ -103,8 +107,12 @@ void add_rows(Table& table, Tally& tally, const std::string& scan, const std::ve
 
 std::vector<ReportedObject> reported_objects(const ScanResult& result, const std::vector<CadModel>& models) {
   std::vector<ReportedObject> reported;
-  for (const ScanResult::Object& detection : result.detections)
-    reported.push_back({object_named(models, detection.object), detection.T_sensor_model});
+  for (const ScanResult::Object& detection : result.detections) {
+    ReportedObject report{object_named(models, detection.object), detection.T_sensor_model};
+    for (const ScanResult::Object& other : detection.ambiguous_with)
+      report.alternatives.push_back({object_named(models, other.object), other.T_sensor_model});
+    reported.push_back(std::move(report));
+  }
   return reported;
 }
 
@@ -147,8 +155,10 @@ int run_show(const ShowCommand& command) {
   if (!table.rows.empty()) {
     std::cout << to_text(table) << tally.objects << " true objects: " << tally.right
               << " recognized with the right pose, " << tally.indistinguishable
-              << " right as far as the view can tell, " << tally.objects - tally.right - tally.indistinguishable
-              << " missed; " << tally.false_reports << " wrong reports\n";
+              << " right as far as the view can tell, " << tally.declared
+              << " named among the alternatives of a report, "
+              << tally.objects - tally.right - tally.declared - tally.indistinguishable << " missed; "
+              << tally.false_reports << " wrong reports\n";
   }
   return kExitDone;
 }

@@ -38,6 +38,7 @@ void count_objects(const SceneRecord& scene, const VisibleRange& visible, Summar
     ++row.objects;
     row.named += scene.verdicts.named[t] ? 1 : 0;
     row.right += scene.verdicts.truth[t] == Verdict::right ? 1 : 0;
+    row.declared += scene.verdicts.truth[t] == Verdict::declared ? 1 : 0;
     row.indistinguishable += scene.verdicts.truth[t] == Verdict::indistinguishable ? 1 : 0;
   }
 }
@@ -49,7 +50,8 @@ void count_reports(const SceneRecord& scene, SummaryRow& row, Mean& rank) {
     row.false_positives += verdict == Verdict::false_positive ? 1 : 0;
     row.wrong_poses += verdict == Verdict::wrong_pose ? 1 : 0;
     row.duplicates += verdict == Verdict::duplicate ? 1 : 0;
-    if (verdict == Verdict::right || verdict == Verdict::indistinguishable) rank.add(scene.ranks[r]);
+    if (verdict == Verdict::right || verdict == Verdict::declared || verdict == Verdict::indistinguishable)
+      rank.add(scene.ranks[r]);
   }
 }
 
@@ -80,7 +82,9 @@ std::vector<std::string> summary_cells(const SummaryRow& row, std::uint64_t seed
                                     std::to_string(seed)};
   add_share(cells, row.named, row.objects);
   add_share(cells, row.right, row.objects);
-  add_share(cells, row.right + row.indistinguishable, row.objects);
+  cells.push_back(percent(row.declared, row.objects));
+  add_share(cells, row.right + row.declared, row.objects);
+  add_share(cells, row.right + row.declared + row.indistinguishable, row.objects);
   for (const long count : {row.reported, row.false_positives, row.wrong_poses, row.duplicates})
     cells.push_back(std::to_string(count));
   for (const double mean :
@@ -100,6 +104,8 @@ const char* verdict_name(Verdict verdict) {
       return "missed";
     case Verdict::right:
       return "right";
+    case Verdict::declared:
+      return "declared";
     case Verdict::indistinguishable:
       return "indistinguishable";
     case Verdict::wrong_pose:
@@ -171,9 +177,13 @@ Table summary_table(const std::vector<SummaryRow>& rows, std::uint64_t seed) {
                   "right_pose_percent",
                   "right_pose_low",
                   "right_pose_high",
-                  "right_or_indistinguishable_percent",
-                  "right_or_indistinguishable_low",
-                  "right_or_indistinguishable_high",
+                  "declared_percent",
+                  "right_or_declared_percent",
+                  "right_or_declared_low",
+                  "right_or_declared_high",
+                  "right_declared_or_indistinguishable_percent",
+                  "right_declared_or_indistinguishable_low",
+                  "right_declared_or_indistinguishable_high",
                   "reported",
                   "false_positives",
                   "wrong_poses",
@@ -200,19 +210,30 @@ Table summary_table(const std::vector<SummaryRow>& rows, std::uint64_t seed) {
 
 Table short_table(const std::vector<SummaryRow>& rows) {
   Table table;
-  table.header = {"method",    "set",        "n",          "object %", "right %",    "95 %",       "+indist %",
-                  "false pos", "wrong pose", "hypotheses", "verif.",   "when found", "energy ev.", "total ms"};
+  table.header = {"method",     "set",        "n",          "object %",   "right %",
+                  "95 %",       "declared %", "+indist %",  "false pos",  "wrong pose",
+                  "hypotheses", "verif.",     "when found", "energy ev.", "total ms"};
   for (const SummaryRow& row : rows) {
     const Interval interval = wilson_interval(row.right, row.objects);
-    table.rows.push_back({row.method, row.label, std::to_string(row.objects), percent(row.named, row.objects),
-                          percent(row.right, row.objects),
-                          decimal(100.0 * interval.low, 0) + "-" + decimal(100.0 * interval.high, 0),
-                          percent(row.right + row.indistinguishable, row.objects), std::to_string(row.false_positives),
-                          std::to_string(row.wrong_poses), decimal(row.hypotheses, 1), decimal(row.verifications, 2),
-                          decimal(row.verifications_when_found, 2), decimal(row.energy_evaluations, 0),
-                          decimal(row.milliseconds.total, 1)});
+    table.rows.push_back(
+        {row.method, row.label, std::to_string(row.objects), percent(row.named, row.objects),
+         percent(row.right, row.objects), decimal(100.0 * interval.low, 0) + "-" + decimal(100.0 * interval.high, 0),
+         percent(row.declared, row.objects), percent(row.right + row.declared + row.indistinguishable, row.objects),
+         std::to_string(row.false_positives), std::to_string(row.wrong_poses), decimal(row.hypotheses, 1),
+         decimal(row.verifications, 2), decimal(row.verifications_when_found, 2), decimal(row.energy_evaluations, 0),
+         decimal(row.milliseconds.total, 1)});
   }
   return table;
+}
+
+Table declared_table(const std::vector<SummaryRow>& rows, std::uint64_t seed) {
+  std::vector<CountedShare> shares;
+  for (const SummaryRow& row : rows) {
+    shares.push_back({row.method, row.label + ": right", row.right, row.objects});
+    shares.push_back({row.method, row.label + ": declared", row.declared, row.objects});
+    shares.push_back({row.method, row.label + ": right or declared", row.right + row.declared, row.objects});
+  }
+  return share_table(shares, seed);
 }
 
 Table calibration_table(const std::vector<SceneRecord>& scenes) {

@@ -33,6 +33,7 @@ struct SummaryRow {
   long objects = 0;            // true objects counted
   long named = 0;              // of them reported, whatever the pose: what the paper counts
   long right = 0;              // of them reported with the right pose
+  long declared = 0;           // of them reported with a right alternative only
   long indistinguishable = 0;  // of them reported with a pose that the view cannot tell from the true one
   long reported = 0;
   long false_positives = 0;
@@ -47,7 +48,7 @@ struct SummaryRow {
   double verifications_when_found = 0.0;  // without the failed scenes
   double energy_evaluations = 0.0;
   double energy_evaluations_when_found = 0.0;
-  double rank = 0.0;  // of the right reports' hypotheses
+  double rank = 0.0;  // of the hypotheses of reports that are right, declared or indistinguishable
   StageTimes milliseconds;
 };
 
@@ -69,6 +70,9 @@ struct CountedShare {
 };
 // One row a share: method, set, n, seed, hits, percent, 95 % interval.
 [[nodiscard]] Table share_table(const std::vector<CountedShare>& shares, std::uint64_t seed);
+
+// Three shares a row: right, declared, and either of them.
+[[nodiscard]] Table declared_table(const std::vector<SummaryRow>& rows, std::uint64_t seed);
 
 // All columns, with 95 % intervals, n and the seed; times last, because they alone differ between runs.
 [[nodiscard]] Table summary_table(const std::vector<SummaryRow>& rows, std::uint64_t seed);

@@ -1,13 +1,13 @@
 // What the compiler knows about one object and the runtime uses: the content of a database, as plain structs.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "common/density.h"
+#include "common/pose.h"
 #include "common/region_attributes.h"
 #include "common/relation_attributes.h"
 #include "common/segmentation.h"
@@ -72,6 +72,17 @@ struct AcceptanceModel {
   int samples = 0;  // simulated poses it was fitted to; 0: none, a database without acceptance models
 };
 
+inline constexpr int kMostExactSymmetries = 512;  // of one model: enough for a cylinder of 256 facets
+inline constexpr int kMostNearSymmetries = 32;    // of one model
+
+// A motion of the object under which it looks the same, or almost the same, to the sensor it was compiled for.
+struct Symmetry {
+  Pose T_model_model;
+  bool exact =
+      false;  // the planar faces and corners come to lie on themselves; the exact ones and the identity are a group
+  double overlap = 0.0;  // share of the surface that comes to lie on the surface. Limit: 0 to 1.
+};
+
 // One object, ready for recognition.
 struct CompiledModel {
   std::string name;
@@ -85,6 +96,7 @@ struct CompiledModel {
   std::vector<FacePair> pairs;                          // ascending by (first, second)
   SurfaceTemplate surface;
   AcceptanceModel acceptance;
+  std::vector<Symmetry> symmetries;                     // without the identity; exact ones first
   std::vector<Eigen::Vector3f> vertices;                // of the CAD mesh, for overlays and for pose distances. Unit: mm.
   std::vector<std::array<int, 3>> triangles;            // indices into vertices
   std::vector<int> triangle_faces;                      // face of each triangle; empty in databases of earlier compilers

@@ -13,8 +13,8 @@
 #include "runtime/recognize.h"
 #include "runtime/rendering.h"
 #include "runtime/scan_context.h"
+#include "runtime/settled_localization.h"
 #include "runtime/start_search.h"
-#include "runtime/two_way_search.h"
 
 namespace foresight {
 namespace {
@@ -95,28 +95,7 @@ struct PosedModel {
 
 // The share of the cells showing either, each alone, that show the same surface.
 double same_share(const PosedModel& a, const PosedModel& b, const PinholeCamera& camera) {
-  const Rendering at_a = render(a.model, a.T_sensor_model, camera);
-  const Rendering at_b = render(b.model, b.T_sensor_model, camera);
-  const auto depth_at_b = [&](int row, int column) {
-    row += at_a.first_row - at_b.first_row;
-    column += at_a.first_column - at_b.first_column;
-    if (row < 0 || row >= at_b.rows || column < 0 || column >= at_b.columns) return 0.0F;
-    return at_b.depth[static_cast<std::size_t>(at_b.cell(row, column))];
-  };
-  int shown_at_a = 0;
-  int same = 0;
-  for (int row = 0; row < at_a.rows; ++row) {
-    for (int column = 0; column < at_a.columns; ++column) {
-      const float depth = at_a.depth[static_cast<std::size_t>(at_a.cell(row, column))];
-      if (!(depth > 0.0F)) continue;
-      ++shown_at_a;
-      const float other = depth_at_b(row, column);
-      same += other > 0.0F && std::abs(static_cast<double>(other - depth)) <= kSameDistance ? 1 : 0;
-    }
-  }
-  const auto shown_at_b = std::count_if(at_b.depth.begin(), at_b.depth.end(), [](float z) { return z > 0.0F; });
-  const double either = shown_at_a + static_cast<double>(shown_at_b) - same;
-  return either > 0.0 ? same / either : 0.0;
+  return same_share(render(a.model, a.T_sensor_model, camera), render(b.model, b.T_sensor_model, camera), kSameDistance);
 }
 
 // The pose moved and turned about the object's centre.
@@ -173,7 +152,7 @@ class SceneTeacher {
       const bool first = lessons_.qualities.empty();
       if (!learn(start.T_sensor_model) || !first) continue;
       EvidenceOptions rough;
-      rough.distance = TwoWayOptions{}.start_distance;
+      rough.distance = kStartDistance;
       lessons_.qualities.push_back(start.quality);
       lessons_.starts.push_back(evidence_features(gather_evidence(model_, start.T_sensor_model, labelled_, rough)));
     }
@@ -183,7 +162,7 @@ class SceneTeacher {
  private:
   // Refines a start and takes down what its evidence looks like. Whether it came to a right pose.
   bool learn(const Pose& start) {
-    const Pose pose = localize_and_settle(model_, 0, start, context_, labelled_, {}, settling_).T_sensor_model;
+    const Pose pose = localize_and_settle(context_, labelled_, 0, start, {}, settling_).T_sensor_model;
     EvidenceOptions fine;
     fine.distance = agreeing_distance(labelled_.sensor);
     const PosedModel posed{model_, pose};

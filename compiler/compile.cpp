@@ -3,6 +3,7 @@
 #include <set>
 
 #include "common/errors.h"
+#include "compiler/near_symmetries.h"
 #include "compiler/sensor_simulator.h"
 #include "compiler/statistics.h"
 
@@ -50,6 +51,7 @@ CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, cons
   SurfaceTemplateOptions surface = options.surface;
   surface.distance = sensor.working_distance();
   model.surface = build_surface_template(cad, surface);
+  model.symmetries = list_symmetries(cad, sensor);
   model.acceptance = train_acceptance(cad, model, new_database(sensor, options), options.acceptance);
   return model;
 }

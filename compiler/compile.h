@@ -1,4 +1,5 @@
-// The compiler's order of stages: CAD -> views -> regions -> samples -> statistics, and the surface template beside them.
+// The compiler's order of stages: CAD -> views -> regions -> samples -> statistics, and the surface template and the
+// symmetries beside them.
 #pragma once
 
 #include <functional>
@@ -20,7 +21,7 @@ struct CompileOptions {
   SurfaceTemplateOptions surface;    // its distance is overridden by the sensor's working distance
 };
 
-// Statistics and template of one model. progress(done) counts views; may be called from any thread.
+// Statistics, template and symmetries of one model. progress(done) counts views; may be called from any thread.
 [[nodiscard]] CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, const CompileOptions& options,
                                           const std::function<void(int)>& progress = {});
 

@@ -111,6 +111,15 @@ void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
   message.set_samples(static_cast<std::uint32_t>(acceptance.samples));
 }
 
+void fill(v1::Symmetry& message, const Symmetry& symmetry) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) message.add_rotation(symmetry.T_model_model.rotation(row, column));
+  }
+  fill(*message.mutable_translation(), symmetry.T_model_model.translation);
+  message.set_exact(symmetry.exact);
+  message.set_overlap(symmetry.overlap);
+}
+
 void fill(v1::Model& message, const CompiledModel& model) {
   message.set_name(model.name);
   message.set_cad_file(model.cad_file);
@@ -121,6 +130,7 @@ void fill(v1::Model& message, const CompiledModel& model) {
   message.set_views(static_cast<std::uint32_t>(model.views));
   for (const ModelFace& face : model.faces) fill(*message.add_faces(), face);
   for (const FacePair& pair : model.pairs) fill(*message.add_pairs(), pair);
+  for (const Symmetry& symmetry : model.symmetries) fill(*message.add_symmetries(), symmetry);
   fill(*message.mutable_surface(), model.surface);
   for (const Eigen::Vector3f& vertex : model.vertices) append(*message.mutable_vertices(), vertex);
   for (const std::array<int, 3>& triangle : model.triangles)

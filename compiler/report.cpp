@@ -1,8 +1,9 @@
 #include "compiler/report.h"
 
-#include <sstream>
-
+#include <algorithm>
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace foresight {
 namespace {
@@ -13,6 +14,14 @@ int faces_found(const CompiledModel& model) {
   int found = 0;
   for (const ModelFace& face : model.faces) found += face.views_found > 0 ? 1 : 0;
   return found;
+}
+
+std::ptrdiff_t exact_symmetries(const CompiledModel& model) {
+  return std::count_if(model.symmetries.begin(), model.symmetries.end(), [](const Symmetry& s) { return s.exact; });
+}
+
+std::ptrdiff_t near_symmetries(const CompiledModel& model) {
+  return static_cast<std::ptrdiff_t>(model.symmetries.size()) - exact_symmetries(model);
 }
 
 Json sensor_json(const SensorModel& sensor) {
@@ -45,6 +54,8 @@ Json model_json(const CompiledModel& model) {
           {"face_pairs", model.pairs.size()},
           {"template_points", model.surface.points.size()},
           {"template_spacing_mm", model.surface.spacing},
+          {"exact_symmetries", exact_symmetries(model)},
+          {"near_symmetries", near_symmetries(model)},
           {"faces", faces}};
 }
 
@@ -61,9 +72,11 @@ std::string report_text(const CompiledDatabase& database, std::size_t bytes) {
       << database.segmentation.seed_block << " cells, smallest region " << database.segmentation.smallest_region << " cells\n"
       << "densities: " << database.density.bins << " bins, kernel " << database.density.kernel << " bins\n";
   for (const CompiledModel& model : database.models) {
-    out << "object " << model.name << ": " << model.faces.size() << " faces (" << faces_found(model) << " found by extraction), "
-        << model.pairs.size() << " pairs seen together, " << model.surface.points.size() << " template points, diameter "
-        << model.diameter << " mm, " << model.views << " views, from " << model.cad_file << "\n";
+    out << "object " << model.name << ": " << model.faces.size() << " faces (" << faces_found(model)
+        << " found by extraction), " << model.pairs.size() << " pairs seen together, " << model.surface.points.size()
+        << " template points, " << exact_symmetries(model) << " exact and " << near_symmetries(model)
+        << " near symmetries, diameter " << model.diameter << " mm, " << model.views << " views, from "
+        << model.cad_file << "\n";
   }
   return out.str();
 }

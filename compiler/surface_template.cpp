@@ -67,21 +67,6 @@ class PointCubes {
   std::unordered_map<std::uint64_t, std::vector<int>> cubes_;  // only looked up, never walked through
 };
 
-// Ericson, "Real-Time Collision Detection", 5.1.5.
-double distance_to_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const auto to_edge = [&p](const Vector3d& from, const Vector3d& to) {
-    const Vector3d along = to - from;
-    const double length2 = along.squaredNorm();
-    const double place = length2 > 0.0 ? std::clamp((p - from).dot(along) / length2, 0.0, 1.0) : 0.0;
-    return (from + place * along - p).norm();
-  };
-  const Vector3d normal = (b - a).cross(c - a);
-  const bool above = (b - a).cross(p - a).dot(normal) >= 0.0 && (c - b).cross(p - b).dot(normal) >= 0.0 &&
-                     (a - c).cross(p - c).dot(normal) >= 0.0;
-  if (above && normal.squaredNorm() > 0.0) return std::abs((p - a).dot(normal)) / normal.norm();
-  return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
-}
-
 std::array<Vector3d, 3> corners_of(const CadModel& model, int triangle) {
   const Triangle& t = model.triangles[at(triangle)];
   return {model.vertices[at(t[0])], model.vertices[at(t[1])], model.vertices[at(t[2])]};

@@ -58,6 +58,21 @@ bool is_ear(std::span<const Vector3d> polygon, const std::vector<int>& ring, std
 
 }  // namespace
 
+double distance_to_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                            const Eigen::Vector3d& c) {
+  const auto to_edge = [&p](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    const Eigen::Vector3d along = to - from;
+    const double length2 = along.squaredNorm();
+    const double place = length2 > 0.0 ? std::clamp((p - from).dot(along) / length2, 0.0, 1.0) : 0.0;
+    return (from + place * along - p).norm();
+  };
+  const Eigen::Vector3d normal = (b - a).cross(c - a);
+  const bool above = (b - a).cross(p - a).dot(normal) >= 0.0 && (c - b).cross(p - b).dot(normal) >= 0.0 &&
+                     (a - c).cross(p - c).dot(normal) >= 0.0;
+  if (above && normal.squaredNorm() > 0.0) return std::abs((p - a).dot(normal)) / normal.norm();
+  return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+}
+
 std::vector<EdgeUse> edge_uses(std::span<const Triangle> triangles) {
   std::vector<EdgeUse> uses;
   uses.reserve(3 * triangles.size());

@@ -29,6 +29,10 @@ struct EdgeUse {
 // Cuts a simple polygon, convex or not, into triangles of its corner numbers by clipping ears.
 [[nodiscard]] std::vector<Triangle> triangulate(std::span<const Eigen::Vector3d> polygon);
 
+// From a point to the triangle of three corners (Ericson, "Real-Time Collision Detection", 5.1.5).
+[[nodiscard]] double distance_to_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                          const Eigen::Vector3d& c);
+
 // Corners nearer than this are one corner: 1e-6 of the mesh's size, as far as single precision in files can be trusted.
 [[nodiscard]] double weld_tolerance(const TriangleMesh& mesh);
 

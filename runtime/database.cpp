@@ -160,6 +160,16 @@ AcceptanceModel from_message(const v1::AcceptanceModel& message) {
   return acceptance;
 }
 
+// REQUIRES: nine numbers in the rotation.
+Symmetry from_message(const v1::Symmetry& message) {
+  Symmetry symmetry;
+  for (int i = 0; i < 9; ++i) symmetry.T_model_model.rotation(i / 3, i % 3) = message.rotation(i);
+  symmetry.T_model_model.translation = from_message(message.translation());
+  symmetry.exact = message.exact();
+  symmetry.overlap = message.overlap();
+  return symmetry;
+}
+
 CompiledModel from_message(const v1::Model& message, const std::string& file) {
   CompiledModel model;
   model.name = message.name();
@@ -188,6 +198,11 @@ CompiledModel from_message(const v1::Model& message, const std::string& file) {
   model.triangle_faces.reserve(static_cast<std::size_t>(message.triangle_faces_size()));
   for (const std::uint32_t face : message.triangle_faces()) model.triangle_faces.push_back(to_int(face));
   model.acceptance = from_message(message.acceptance());
+  for (const v1::Symmetry& symmetry : message.symmetries()) {
+    if (symmetry.rotation_size() != 9)
+      refuse_inconsistent(file, "model '" + model.name + "': the rotation of a symmetry has not nine numbers");
+    model.symmetries.push_back(from_message(symmetry));
+  }
   return model;
 }
 

@@ -196,6 +196,23 @@ void check_acceptance(const Place& place) {
     require(least >= 0.0 && least <= 1.0, place, "what the acceptance model asks of a start is outside 0 to 1");
 }
 
+void check_symmetries(const Place& place) {
+  const std::vector<Symmetry>& symmetries = place.model.symmetries;
+  const auto is_exact = [](const Symmetry& symmetry) { return symmetry.exact; };
+  const auto exact = std::count_if(symmetries.begin(), symmetries.end(), is_exact);
+  require(exact <= kMostExactSymmetries, place, "it has more than 512 exact symmetries");
+  require(static_cast<std::ptrdiff_t>(symmetries.size()) - exact <= kMostNearSymmetries, place,
+          "it has more than 32 near symmetries");
+  require(std::is_partitioned(symmetries.begin(), symmetries.end(), is_exact), place,
+          "the exact symmetries do not come first");
+  for (std::size_t i = 0; i < symmetries.size(); ++i) {
+    const Symmetry& symmetry = symmetries[i];
+    require(is_rotation(symmetry.T_model_model.rotation), place, "symmetry", i, "it has no proper rotation");
+    require(is_position(symmetry.T_model_model.translation), place, "symmetry", i, "the translation is not finite");
+    require(symmetry.overlap >= 0.0 && symmetry.overlap <= 1.0, place, "symmetry", i, "the overlap is outside 0 to 1");
+  }
+}
+
 void check_settings(const CompiledDatabase& database, const std::string& file) {
   try {
     check(database.sensor, file);
@@ -230,6 +247,7 @@ void check(const CompiledDatabase& database, const std::string& file) {
     check_surface(place);
     check_mesh(place);
     check_acceptance(place);
+    check_symmetries(place);
   }
 }
 

@@ -21,6 +21,13 @@ struct RangeImageView {
   const float* xyz = nullptr;   // rows*columns*3 values, row by row; an invalid cell has NaN in all three
 };
 
+// Another explanation of what a detection explains.
+struct Alternative {
+  std::string object;                       // name of the compiled model
+  std::array<double, 16> T_sensor_model{};  // as in Detection
+  double score = 0.0;                       // as in Detection
+};
+
 // One recognized object.
 struct Detection {
   std::string object;                      // name of the compiled model
@@ -30,8 +37,9 @@ struct Detection {
   double coherent = 0.0;                   // beta
   double occluding = 0.0;                  // gamma
   int rank = 0;                            // place of its hypothesis in the ordered list, from 1
-  std::vector<int> faces;                  // faces of the hypothesis, and
+  std::vector<int> faces;                  // faces of the hypothesis, as they lie at this pose, and
   std::vector<int> regions;                // the regions they were matched with (Fig. 9's first column counts regions)
+  std::vector<Alternative> ambiguous_with;  // other poses or objects that this view fits equally well; mostly none
 };
 
 // Columns of the paper's Fig. 9, and the count of eq. (9) evaluations (Table I's cost).

@@ -19,8 +19,6 @@ void check(const RecognizeOptions& options);  // throws UsageError
 // Throws DatabaseError naming the file when the method of the options needs what the database does not hold.
 void check_method(const RecognizeOptions& options, const Database& database, const std::string& file);
 
-// LocalizationOptions::reach of the two-way method, whose starts are near. Unit: mm.
-inline constexpr double kTwoWayReach = 20.0;
 
 // The options of single stages.
 [[nodiscard]] LocalizationOptions localization_options(const RecognizeOptions& options);

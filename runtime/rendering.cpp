@@ -126,4 +126,27 @@ Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const P
   return rendering;
 }
 
+double same_share(const Rendering& a, const Rendering& b, double distance) {
+  const auto depth_at_b = [&](int row, int column) {
+    row += a.first_row - b.first_row;
+    column += a.first_column - b.first_column;
+    if (row < 0 || row >= b.rows || column < 0 || column >= b.columns) return 0.0F;
+    return b.depth[static_cast<std::size_t>(b.cell(row, column))];
+  };
+  int shown_by_a = 0;
+  int same = 0;
+  for (int row = 0; row < a.rows; ++row) {
+    for (int column = 0; column < a.columns; ++column) {
+      const float depth = a.depth[static_cast<std::size_t>(a.cell(row, column))];
+      if (!(depth > 0.0F)) continue;
+      ++shown_by_a;
+      const float other = depth_at_b(row, column);
+      same += other > 0.0F && std::abs(static_cast<double>(other - depth)) <= distance ? 1 : 0;
+    }
+  }
+  const auto shown_by_b = std::count_if(b.depth.begin(), b.depth.end(), [](float z) { return z > 0.0F; });
+  const double either = shown_by_a + static_cast<double>(shown_by_b) - same;
+  return either > 0.0 ? same / either : 0.0;
+}
+
 }  // namespace foresight

@@ -27,4 +27,8 @@ struct Rendering {
 // where the sensor's rays pass. Empty when any vertex lies behind the camera or all of it outside the image.
 [[nodiscard]] Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const PinholeCamera& camera);
 
+// Of the cells that either shows, the share that show the same: both depths are there and differ by no more than this.
+// distance: Unit: mm.
+[[nodiscard]] double same_share(const Rendering& a, const Rendering& b, double distance);
+
 }  // namespace foresight

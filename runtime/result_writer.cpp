@@ -20,6 +20,14 @@ Json pose_json(const std::array<double, 16>& T) {
   return rows;
 }
 
+Json alternative_json(const Alternative& alternative) {
+  Json json;
+  json["object"] = alternative.object;
+  json["pose"] = pose_json(alternative.T_sensor_model);
+  json["score"] = alternative.score;
+  return json;
+}
+
 Json detection_json(const Detection& detection) {
   Json json;
   json["object"] = detection.object;
@@ -31,6 +39,8 @@ Json detection_json(const Detection& detection) {
   json["rank"] = detection.rank;
   json["faces"] = detection.faces;
   json["regions"] = detection.regions;
+  json["ambiguous_with"] = Json::array();
+  for (const Alternative& other : detection.ambiguous_with) json["ambiguous_with"].push_back(alternative_json(other));
   return json;
 }
 
@@ -80,6 +90,17 @@ std::string list(const std::vector<int>& numbers) {
   return text;
 }
 
+// One line: the rows of the pose one after the other.
+std::string alternative_text(const Alternative& alternative) {
+  std::string text =
+      "  ambiguous with " + printable(alternative.object) + format("  score %.3f  pose", alternative.score);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const double* T = alternative.T_sensor_model.data() + 4 * row;
+    text += format("%s %.6f %.6f %.6f %.3f", row == 0 ? "" : ",", T[0], T[1], T[2], T[3]);
+  }
+  return text + " mm\n";
+}
+
 std::string detection_text(const Detection& detection) {
   std::string text = "  ";
   text += printable(detection.object);
@@ -90,6 +111,7 @@ std::string detection_text(const Detection& detection) {
     const double* T = detection.T_sensor_model.data() + 4 * row;
     text += format("    %9.6f %9.6f %9.6f  %10.3f mm\n", T[0], T[1], T[2], T[3]);
   }
+  for (const Alternative& other : detection.ambiguous_with) text += alternative_text(other);
   return text;
 }
 

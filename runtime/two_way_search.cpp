@@ -1,24 +1,30 @@
 #include "runtime/two_way_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "runtime/canonical_pose.h"
 #include "runtime/pose_check.h"
 #include "runtime/pose_evidence.h"
+#include "runtime/rendering.h"
+#include "runtime/settled_localization.h"
 #include "runtime/start_search.h"
 
 namespace foresight {
 namespace {
 
-constexpr int kSettlings = 3;
-constexpr double kLocalizationError = 1.0;  // one step. Unit: mm.
-
 // A refined pose that may be reported.
 struct Candidate {
-  std::size_t start = 0;
-  RefinedPose refined;
+  std::size_t start = 0;  // that it came of
+  Localization localization;
   double probability = 0.0;
+
+  [[nodiscard]] const Pose& pose() const { return localization.T_sensor_model; }
 };
+
+constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
+constexpr double kRivalView = 0.7;             // of the cells a rival's start must show alike to be worth refining
 
 class TwoWaySearch {
  public:
@@ -47,19 +53,26 @@ class TwoWaySearch {
   }
 
  private:
-  [[nodiscard]] const CompiledModel& model(const StartPose& start) const {
-    return scan_.database.models()[static_cast<std::size_t>(start.model)];
+  [[nodiscard]] const CompiledModel& model_of(std::size_t start) const {
+    return scan_.database.models()[static_cast<std::size_t>(starts_[start].model)];
   }
   [[nodiscard]] bool uses_taken(const StartPose& start) const {
     return std::any_of(start.regions.begin(), start.regions.end(),
                        [&](int region) { return labelled_.taken[static_cast<std::size_t>(region)]; });
   }
-  [[nodiscard]] PoseEvidence evidence(const Candidate& candidate) const {
+  [[nodiscard]] PoseEvidence evidence(std::size_t start, const Pose& pose) const {
     EvidenceOptions fine;
     fine.distance = agreeing_distance(labelled_.sensor);
-    return gather_evidence(model(starts_[candidate.start]), candidate.refined.localization.T_sensor_model, labelled_,
-                           fine);
+    return gather_evidence(model_of(start), pose, labelled_, fine);
   }
+  [[nodiscard]] Rendering drawn(std::size_t start, const Pose& pose) const {
+    return render(model_of(start), pose, scan_.camera);
+  }
+  [[nodiscard]] double quality(std::size_t start, const Pose& pose) {
+    ++result_.statistics.pose_checks;
+    return checker_.check(starts_[start].model, pose).quality();
+  }
+
   // Counts tries of the same regions with one model.
   bool tried_enough(const StartPose& start) {
     std::vector<int> key = start.regions;
@@ -68,49 +81,68 @@ class TwoWaySearch {
     return ++tries_[key] > two_way_.most_tries;
   }
 
-  void try_start(std::size_t i) {
-    const StartPose& start = starts_[i];
-    const CompiledModel& compiled = model(start);
-    // Read again: regions may have been taken since.
-    ++result_.statistics.pose_checks;
-    const double quality = checker_.check(start.model, start.T_sensor_model).quality();
+  // Whether training saw anything come of starts like this. Read anew: regions may have been taken since it was found.
+  bool worth_refining(std::size_t start) {
+    const AcceptanceModel& acceptance = model_of(start).acceptance;
+    const Pose& pose = starts_[start].T_sensor_model;
+    if (quality(start, pose) < acceptance.least_quality) return false;
     EvidenceOptions rough;
-    rough.distance = two_way_.start_distance;
-    const bool worth =
-        quality >= compiled.acceptance.least_quality &&
-        probability_right(compiled.acceptance, gather_evidence(compiled, start.T_sensor_model, labelled_, rough)) >=
-            compiled.acceptance.least_probability;
+    rough.distance = kStartDistance;
+    return probability_right(acceptance, gather_evidence(model_of(start), pose, labelled_, rough)) >=
+           acceptance.least_probability;
+  }
+
+  Candidate refined(std::size_t start, const Pose& from) {
     watch_.lap(result_.milliseconds.verify);
-    if (!worth) return;
-    if (tried_enough(start)) return;
-    Candidate candidate{i, {}, 0.0};
-    candidate.refined.localization =
-        localize_and_settle(compiled, start.model, start.T_sensor_model, scan_, labelled_, options_, settling_);
+    Candidate candidate;
+    candidate.start = start;
+    candidate.localization =
+        localize_and_settle(scan_, labelled_, starts_[start].model, from, options_, settling_);
     ++result_.statistics.verifications;
-    result_.statistics.energy_evaluations += candidate.refined.localization.energy_evaluations;
+    result_.statistics.energy_evaluations += candidate.localization.energy_evaluations;
     watch_.lap(result_.milliseconds.localize);
-    candidate.probability = probability_right(compiled.acceptance, evidence(candidate));
+    candidate.probability = probability_right(model_of(start).acceptance, evidence(start, candidate.pose()));
     watch_.lap(result_.milliseconds.verify);
+    return candidate;
+  }
+
+  void try_start(std::size_t i) {
+    if (!worth_refining(i) || tried_enough(starts_[i])) return;
+    Candidate candidate = refined(i, starts_[i].T_sensor_model);
+    if (candidate.probability < two_way_.accepted) return;
+    prefer_near_symmetric(candidate);
     if (candidate.probability >= two_way_.sure) {
       accept(candidate);
-    } else if (candidate.probability >= two_way_.accepted) {
+    } else {
       candidates_.push_back(candidate);
+    }
+  }
+
+  // An object that looks almost the same after some turn is easily found turned: the better pose counts.
+  void prefer_near_symmetric(Candidate& candidate) {
+    const double least = kNearSymmetricQuality * quality(candidate.start, candidate.pose());
+    for (const Pose& turned : near_symmetric_poses(model_of(candidate.start), candidate.pose())) {
+      if (quality(candidate.start, turned) < least) continue;
+      const Candidate other = refined(candidate.start, turned);
+      if (other.probability > candidate.probability) candidate = other;
     }
   }
 
   // Takes the regions that the pose explains for the most part, and those it was made of.
   void accept(const Candidate& candidate) {
-    const StartPose& start = starts_[candidate.start];
-    const Pose& pose = candidate.refined.localization.T_sensor_model;
-    RefinedPose refined = candidate.refined;
-    refined.verification =
-        verify(model(start), scan_.sphere, pose, scan_.image, scan_.camera, scan_.data, verification_options(options_));
-    Detection detection = to_detection(model(start), refined);
+    const CompiledModel& model = model_of(candidate.start);
+    const CanonicalPose reported = canonical_choice(model, candidate.pose());
+    RefinedPose pose{candidate.localization, {}};
+    pose.localization.T_sensor_model = reported.T_sensor_model;
+    pose.verification = verify(model, scan_.sphere, reported.T_sensor_model, scan_.image, scan_.camera, scan_.data,
+                               verification_options(options_));
+    Detection detection = to_detection(model, pose);
     detection.rank = static_cast<int>(candidate.start) + 1;
     detection.score = candidate.probability;
-    list_supports(start.model, pose, detection);
-    const PoseEvidence found = evidence(candidate);
-    for (const int region : start.regions) labelled_.taken[static_cast<std::size_t>(region)] = true;
+    list_supports(starts_[candidate.start].model, reported.T_sensor_model, detection);
+    detection.ambiguous_with = alternatives(candidate);
+    const PoseEvidence found = evidence(candidate.start, candidate.pose());
+    for (const int region : starts_[candidate.start].regions) labelled_.taken[static_cast<std::size_t>(region)] = true;
     for (std::size_t r = 0; r < scan_.regions.size(); ++r) {
       if (2 * static_cast<std::size_t>(found.explained_of_region[r]) >= scan_.regions[r].region.cells.size()) {
         labelled_.taken[r] = true;
@@ -131,6 +163,51 @@ class TwoWaySearch {
     }
   }
 
+  // What else would show the same: other poses and objects that fit where this one does.
+  std::vector<Alternative> alternatives(const Candidate& candidate) {
+    const Rendering view = drawn(candidate.start, candidate.pose());
+    const std::vector<int>& regions = starts_[candidate.start].regions;
+    std::vector<Candidate> found = {candidate};
+    int looked_at = 0;
+    for (std::size_t i = 0; i < starts_.size() && looked_at < two_way_.most_rivals; ++i) {
+      const StartPose& rival = starts_[i];
+      const bool shares = std::any_of(rival.regions.begin(), rival.regions.end(), [&](int region) {
+        return std::count(regions.begin(), regions.end(), region) > 0;
+      });
+      if (!shares || uses_taken(rival) || already_known(found, i, rival.T_sensor_model)) continue;
+      ++looked_at;
+      if (same_share(view, drawn(i, rival.T_sensor_model), two_way_.same_distance) < kRivalView) continue;
+      const Candidate other = refined(i, rival.T_sensor_model);
+      if (other.probability < two_way_.accepted || already_known(found, i, other.pose())) continue;
+      if (same_share(view, drawn(i, other.pose()), two_way_.same_distance) < two_way_.same_view) continue;
+      found.push_back(other);
+    }
+    std::vector<Alternative> listed;
+    for (std::size_t k = 1; k < found.size(); ++k) {
+      const CompiledModel& model = model_of(found[k].start);
+      const RefinedPose pose{{canonical_pose(model, found[k].pose()), 0.0, 0}, {}};
+      listed.push_back({model.name, to_detection(model, pose).T_sensor_model, found[k].probability});
+    }
+    return listed;
+  }
+
+  // Whether one of the candidates is this pose of this model, but for a symmetry.
+  [[nodiscard]] bool already_known(const std::vector<Candidate>& found, std::size_t start, const Pose& pose) const {
+    const CompiledModel& model = model_of(start);
+    const StartSearchOptions same;
+    const auto equals = [&](const Pose& a, const Pose& b) {
+      return (a * model.centre - b * model.centre).norm() <= 2.0 * same.same_distance &&
+             rotation_angle(a.rotation.transpose() * b.rotation) <= 2.0 * same.same_angle;
+    };
+    return std::any_of(found.begin(), found.end(), [&](const Candidate& other) {
+      if (starts_[other.start].model != starts_[start].model) return false;
+      if (equals(other.pose(), pose)) return true;
+      return std::any_of(model.symmetries.begin(), model.symmetries.end(), [&](const Symmetry& symmetry) {
+        return symmetry.exact && equals(other.pose() * symmetry.T_model_model, pose);
+      });
+    });
+  }
+
   // The most probable first. What the others rest on may have been taken since: their evidence is read again.
   void decide_among_candidates() {
     std::stable_sort(candidates_.begin(), candidates_.end(),
@@ -139,7 +216,8 @@ class TwoWaySearch {
       const auto most = static_cast<std::size_t>(options_.most_detections);
       if (most > 0 && result_.detections.size() >= most) break;
       if (uses_taken(starts_[candidate.start])) continue;
-      candidate.probability = probability_right(model(starts_[candidate.start]).acceptance, evidence(candidate));
+      candidate.probability =
+          probability_right(model_of(candidate.start).acceptance, evidence(candidate.start, candidate.pose()));
       if (candidate.probability >= two_way_.accepted) accept(candidate);
     }
     watch_.lap(result_.milliseconds.verify);
@@ -159,32 +237,6 @@ class TwoWaySearch {
 };
 
 }  // namespace
-
-PoseCheckOptions settling_options(const SensorModel& sensor) {
-  PoseCheckOptions options;
-  options.distance = kLocalizationError + agreeing_distance(sensor);
-  return options;
-}
-
-Localization localize_and_settle(const CompiledModel& model, int model_index, const Pose& start,
-                                 const ScanContext& scan, const LabelledScan& labelled, const RecognizeOptions& options,
-                                 PoseChecker& checker) {
-  LocalizationOptions localization = localization_options(options);
-  localization.reach = kTwoWayReach;
-  Localization localized = localize(model, scan.sphere, start, scan.data, localization);
-  Pose settled = localized.T_sensor_model;
-  for (int i = 0; i < kSettlings; ++i) {
-    settled = refit_to_planes(model, settled, checker.check(model_index, settled), scan.regions);
-  }
-  EvidenceOptions fine;
-  fine.distance = agreeing_distance(labelled.sensor);
-  const auto balance = [&](const Pose& pose) {
-    const PoseEvidence evidence = gather_evidence(model, pose, labelled, fine);
-    return evidence.owned - evidence.behind - evidence.tilted - evidence.front;
-  };
-  if (balance(settled) > balance(localized.T_sensor_model)) localized.T_sensor_model = settled;
-  return localized;
-}
 
 void search_two_way(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,
                     RecognitionResult& result, const TwoWayOptions& two_way) {

@@ -6,26 +6,20 @@
 // the others wait until all are known, and then the more probable ones take what they explain.
 #pragma once
 
-#include "runtime/pose_check.h"
 #include "runtime/scan_context.h"
 
 namespace foresight {
 
 struct TwoWayOptions {
-  double accepted = 0.5;        // a pose more probable than this is reported. Limit: (0, 1).
-  double sure = 0.95;           // a pose more probable than this ends the search among its rivals. Limit: (0, 1).
-  double start_distance = 8.0;  // of data that agree with a start, before localization. Unit: mm. Limit: > 0.
-  int most_tries = 3;  // starts of one model refined from the same regions, the best looking ones. Limit: >= 1.
+  double accepted = 0.5;  // a pose more probable than this is reported. Limit: (0, 1).
+  double sure = 0.95;     // a pose more probable than this ends the search among its rivals. Limit: (0, 1).
+  int most_tries = 3;     // starts of one model refined from the same regions, the best looking ones. Limit: >= 1.
+  // Alternatives: of the starts that rest on the same regions so many, the best looking ones, are refined as well; those
+  // that are accepted and would show the same in this share of the cells are what the view cannot tell apart.
+  int most_rivals = 12;       // Limit: >= 0.
+  double same_view = 0.95;    // Limit: 0 to 1.
+  double same_distance = 5.0; // of depths that are the same. Unit: mm. Limit: > 0.
 };
-
-// Localization (Section V), and then the pose settled on the planes it touches: localization ends within its steps of a
-// millimetre and a degree, planes say it better. sphere: ViewingSphere(80).
-// checker: of the same scan, with a distance hardly larger than what localization leaves (settling_options); planes
-// farther away are other planes.
-[[nodiscard]] Localization localize_and_settle(const CompiledModel& model, int model_index, const Pose& start,
-                                               const ScanContext& scan, const LabelledScan& labelled,
-                                               const RecognizeOptions& options, PoseChecker& checker);
-[[nodiscard]] PoseCheckOptions settling_options(const SensorModel& sensor);
 
 // Fills detections, statistics and times. REQUIRES: check_method passes.
 void search_two_way(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,

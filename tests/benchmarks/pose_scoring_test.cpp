@@ -123,6 +123,42 @@ TEST(Scoring, keeps_what_the_view_cannot_tell_apart_from_what_is_right) {
   EXPECT_EQ(both.reported, (std::vector{Verdict::wrong_pose, Verdict::right}));
 }
 
+TEST(Scoring, takes_a_report_with_a_right_alternative_for_declared) {
+  const std::vector<ScoredObject> objects = {box(), box()};
+  const std::vector<TrueObject> truth = {{0, {at(0)}, 1.0}};
+  const auto verdicts = [&](const ReportedObject& report) { return score_scene(objects, truth, {report}, always); };
+  for (const ReportedObject& report :
+       {ReportedObject{0, turned(0), {{0, at(200)}, {0, at(2)}}},  // another pose of the object
+        ReportedObject{0, at(300), {{0, at(2)}}},                  // the object elsewhere
+        ReportedObject{1, at(0), {{0, at(2)}}}}) {                 // another object
+    EXPECT_EQ(verdicts(report).reported.front(), Verdict::declared);
+    EXPECT_EQ(verdicts(report).truth.front(), Verdict::declared);
+  }
+  EXPECT_EQ(verdicts({0, at(1), {{0, at(2)}}}).reported.front(), Verdict::right);
+}
+
+TEST(Scoring, asks_for_the_right_object_and_pose_among_the_alternatives) {
+  const std::vector<ScoredObject> objects = {box(), box()};
+  const std::vector<TrueObject> truth = {{0, {at(0)}, 1.0}};
+  const auto verdict = [&](const ReportedObject& report) {
+    return score_scene(objects, truth, {report}, never).reported.front();
+  };
+  EXPECT_EQ(verdict({0, turned(0), {{0, at(6)}, {1, at(0)}, {-1, at(0)}}}), Verdict::wrong_pose);
+  EXPECT_EQ(verdict({1, at(0), {{0, turned(0)}}}), Verdict::false_positive);
+}
+
+TEST(Scoring, gives_an_instance_to_a_right_report_before_a_declaring_one) {
+  const std::vector<ReportedObject> reported = {{0, at(300), {{0, at(0)}}}, {0, at(4)}};
+  const SceneVerdicts verdicts = score_scene({box()}, {{0, {at(0)}, 1.0}}, reported, never);
+  EXPECT_EQ(verdicts.reported, (std::vector{Verdict::duplicate, Verdict::right}));
+  EXPECT_EQ(verdicts.truth.front(), Verdict::right);
+  // One report declares one instance, not two.
+  const SceneVerdicts two =
+      score_scene({box()}, {{0, {at(0)}, 1.0}, {0, {at(200)}, 1.0}}, {{0, at(400), {{0, at(0)}, {0, at(200)}}}}, never);
+  EXPECT_EQ(two.reported.front(), Verdict::declared);
+  EXPECT_EQ(two.truth, (std::vector{Verdict::declared, Verdict::missed}));
+}
+
 TEST(Scoring, names_an_object_whatever_its_pose) {
   const SceneVerdicts verdicts = score_scene({box()}, {{0, {at(0)}, 1.0}}, {{0, turned(300)}}, never);
   EXPECT_EQ(verdicts.reported.front(), Verdict::false_positive);

@@ -43,6 +43,19 @@ TEST(ResultFile, reads_back_what_the_runtime_writes) {
   EXPECT_TRUE(results[1].detections.empty());
 }
 
+TEST(ResultFile, reads_alternatives_where_there_are_any) {
+  RecognitionResult result = result_with({rotation_from_vector({0.3, 0, 0}), {10, 20, 900}});
+  result.detections[0].ambiguous_with = {{"castle", result.detections[0].T_sensor_model, 0.5}};
+  const std::vector<ScanResult> results = read(result_json("a.pcd", result, 1.0) + "\n");
+  ASSERT_EQ(results[0].detections[0].ambiguous_with.size(), 1U);
+  EXPECT_EQ(results[0].detections[0].ambiguous_with[0].object, "castle");
+  EXPECT_EQ(results[0].detections[0].ambiguous_with[0].T_sensor_model.translation, Eigen::Vector3d(10, 20, 900));
+  // Results of versions before them.
+  const std::string text =
+      R"({"scan": "a", "detections": [{"object": "tee", "pose": [[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]})";
+  EXPECT_TRUE(read(text)[0].detections[0].ambiguous_with.empty());
+}
+
 TEST(ResultFile, that_is_none_is_refused_by_name) {
   const Pose mirror{Eigen::Vector3d(1, 1, -1).asDiagonal().toDenseMatrix(), {0, 0, 900}};
   for (const std::string& text :

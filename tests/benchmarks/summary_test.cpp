@@ -39,6 +39,23 @@ TEST(Summary, counts_objects_and_reports) {
   EXPECT_EQ(row.false_positives, 0);
 }
 
+TEST(Summary, counts_declared_ambiguity_apart) {
+  std::vector<SceneRecord> scenes = four_scenes();
+  scenes.push_back(scene(Verdict::declared, true, 0.9, 1));
+  const SummaryRow row = summarize("all", scenes);
+  EXPECT_EQ(row.declared, 1);
+  EXPECT_EQ(row.right, 1);
+  EXPECT_EQ(row.indistinguishable, 1);
+  EXPECT_EQ(row.wrong_poses, 1);
+  EXPECT_EQ(row.false_positives, 0);
+  const Table shares = declared_table({row}, 7);
+  ASSERT_EQ(shares.rows.size(), 3U);
+  EXPECT_EQ(shares.rows[1][5], "20.0");  // declared: one of five
+  EXPECT_EQ(shares.rows[2][5], "40.0");  // right or declared
+  const Table calibration = calibration_table(scenes);
+  EXPECT_EQ(calibration.rows.front()[5], "50.0");  // a declared report is not right by itself
+}
+
 TEST(Summary, means_verifications_with_and_without_failed_scenes) {
   const SummaryRow row = summarize("all", four_scenes());
   EXPECT_DOUBLE_EQ(row.verifications, 10.0);
@@ -69,7 +86,8 @@ TEST(Summary, holds_scores_against_what_is_right) {
 TEST(Table, rows_are_as_wide_as_the_header) {
   const std::vector<SceneRecord> scenes = four_scenes();
   const std::vector<SummaryRow> rows = {summarize("all", scenes)};
-  for (const Table& table : {summary_table(rows, 7), short_table(rows), scene_table(scenes, {"box"}), calibration_table(scenes)}) {
+  for (const Table& table : {summary_table(rows, 7), short_table(rows), declared_table(rows, 7),
+                             scene_table(scenes, {"box"}), calibration_table(scenes)}) {
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
   }
   EXPECT_EQ(scene_table(scenes, {"box"}).rows.size(), 7U);

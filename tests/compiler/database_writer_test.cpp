@@ -61,6 +61,13 @@ void expect_same(const CompiledModel& a, const CompiledModel& b) {
   EXPECT_EQ(a.acceptance.bias, b.acceptance.bias);
   EXPECT_EQ(a.acceptance.least_overlap, b.acceptance.least_overlap);
   EXPECT_EQ(a.acceptance.samples, b.acceptance.samples);
+  ASSERT_EQ(a.symmetries.size(), b.symmetries.size());
+  for (std::size_t i = 0; i < a.symmetries.size(); ++i) {
+    EXPECT_EQ(a.symmetries[i].T_model_model.rotation, b.symmetries[i].T_model_model.rotation);
+    EXPECT_EQ(a.symmetries[i].T_model_model.translation, b.symmetries[i].T_model_model.translation);
+    EXPECT_EQ(a.symmetries[i].exact, b.symmetries[i].exact);
+    EXPECT_EQ(a.symmetries[i].overlap, b.symmetries[i].overlap);
+  }
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.triangles, b.triangles);
 }
@@ -90,6 +97,14 @@ TEST(DatabaseWriter, a_model_without_acceptance_model_stays_without) {
   EXPECT_EQ(read.models[0].acceptance.samples, 0);
   EXPECT_EQ(read.models[0].acceptance.weights, AcceptanceModel{}.weights);
   EXPECT_GT(read.models[1].acceptance.samples, 0);
+}
+
+TEST(DatabaseWriter, a_model_without_symmetries_stays_without) {
+  CompiledDatabase database = test::synthetic_database();
+  database.models[0].symmetries.clear();
+  const CompiledDatabase read = decode_database(encode_database(database), "x.db");
+  EXPECT_TRUE(read.models[0].symmetries.empty());
+  EXPECT_FALSE(read.models[1].symmetries.empty());
 }
 
 TEST(DatabaseWriter, same_content_gives_the_same_bytes) {

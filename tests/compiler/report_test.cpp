@@ -29,6 +29,8 @@ TEST(ReportJson, lists_every_object_with_its_faces_in_order) {
     EXPECT_EQ(object["views"], model.views);
     EXPECT_EQ(object["face_pairs"], model.pairs.size());
     EXPECT_EQ(object["template_points"], model.surface.points.size());
+    EXPECT_EQ(object["exact_symmetries"], 1);
+    EXPECT_EQ(object["near_symmetries"], 1);
     ASSERT_EQ(object["faces"].size(), model.faces.size());
     for (std::size_t f = 0; f < model.faces.size(); ++f) {
       EXPECT_EQ(object["faces"][f]["area_mm2"], model.faces[f].area);
@@ -70,6 +72,7 @@ TEST(ReportText, names_every_object_and_the_sensor_a_line_each) {
   for (const CompiledModel& model : database.models) {
     EXPECT_NE(text.find("object " + model.name + ": 4 faces (3 found by extraction), 3 pairs"), std::string::npos)
         << text;
+    EXPECT_NE(text.find("template points, 1 exact and 1 near symmetries, diameter"), std::string::npos) << text;
     EXPECT_NE(text.find(model.cad_file), std::string::npos);
   }
   EXPECT_NE(text.find("sensor " + database.sensor.name), std::string::npos);

@@ -72,7 +72,7 @@ TEST(InspectProgram, tells_in_words_what_is_inside) {
   const Outcome outcome = foresightc({"inspect", two_objects()});
   expect_code(outcome, 0);
   for (const std::string words : {"sensor paper: 240 x 256 cells", "object castle: 18 faces", "object stick: 13 faces",
-                                  "24 bins", "80 views", "from stick.off"}) {
+                                  "24 bins", "80 views", "from stick.off", "3 exact and", "0 exact and"}) {
     EXPECT_TRUE(contains(outcome.out, words)) << words << "\n" << outcome.out;
   }
   EXPECT_TRUE(contains(outcome.out, std::to_string(std::filesystem::file_size(two_objects())) + " bytes"))
@@ -90,7 +90,10 @@ TEST(InspectProgram, tells_as_json_what_is_inside) {
   ASSERT_EQ(json["objects"].size(), 2U);
   EXPECT_EQ(json["objects"][0]["faces"].size(), 18U);
   EXPECT_EQ(json["objects"][1]["faces"].size(), 13U);
+  EXPECT_EQ(json["objects"][0]["exact_symmetries"], 3);
+  EXPECT_EQ(json["objects"][1]["exact_symmetries"], 0);
   for (const Json& object : json["objects"]) {
+    EXPECT_GE(object["near_symmetries"], 0);
     EXPECT_EQ(object["views"], 80);
     EXPECT_GT(object["template_points"], 100);
     for (const Json& face : object["faces"]) {

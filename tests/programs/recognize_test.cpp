@@ -118,7 +118,7 @@ TEST(RecognizeProgram, json_has_the_documented_keys_in_their_order) {
   EXPECT_EQ(keys(json), (Names{"scan", "complete", "detections", "statistics", "milliseconds"}));
   ASSERT_FALSE(json["detections"].empty());
   EXPECT_EQ(keys(json["detections"][0]),
-            (Names{"object", "pose", "score", "alpha", "beta", "gamma", "rank", "faces", "regions"}));
+            (Names{"object", "pose", "score", "alpha", "beta", "gamma", "rank", "faces", "regions", "ambiguous_with"}));
   EXPECT_EQ(keys(json["statistics"]), (Names{"regions", "possible_matches", "threshold_matches", "active_matches",
                                              "hypotheses", "verifications", "energy_evaluations", "pose_checks"}));
   EXPECT_EQ(keys(json["milliseconds"]),
@@ -149,6 +149,7 @@ TEST(RecognizeProgram, json_values_are_what_their_names_say) {
     EXPECT_LE(detection[fraction].get<double>(), 1.0) << fraction;
   }
   EXPECT_GE(detection["rank"].get<int>(), 1);
+  EXPECT_TRUE(detection["ambiguous_with"].is_array());
   EXPECT_EQ(detection["faces"].size(), detection["regions"].size());
   const Json& counts = json["statistics"];
   EXPECT_GE(counts["possible_matches"], counts["threshold_matches"]);

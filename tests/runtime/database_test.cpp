@@ -286,6 +286,46 @@ TEST(DecodeDatabase, refuses_bad_acceptance_models) {
   EXPECT_EQ(error_of(bytes).fault(), DatabaseFault::inconsistent);
 }
 
+TEST(DecodeDatabase, refuses_bad_symmetries) {
+  const auto expect_bad = [](const std::string& words, const std::function<void(Symmetry&)>& change) {
+    expect_model_inconsistent("symmetry 1: " + words, [&](CompiledModel& m) { change(m.symmetries[1]); });
+  };
+  for (const double value : {kNan, kInfinity, -kInfinity}) {
+    expect_bad("it has no proper rotation", [&](Symmetry& s) { s.T_model_model.rotation(1, 2) = value; });
+    expect_bad("the translation", [&](Symmetry& s) { s.T_model_model.translation.y() = value; });
+    expect_bad("the overlap", [&](Symmetry& s) { s.overlap = value; });
+  }
+  expect_bad("it has no proper rotation", [](Symmetry& s) { s.T_model_model.rotation *= 1.001; });
+  expect_bad("it has no proper rotation", [](Symmetry& s) { s.T_model_model.rotation.col(0) *= -1.0; });  // a mirror
+  expect_bad("it has no proper rotation", [](Symmetry& s) { s.T_model_model.rotation.setZero(); });
+  expect_bad("the translation", [](Symmetry& s) { s.T_model_model.translation.x() = 1e7; });
+  expect_bad("the overlap", [](Symmetry& s) { s.overlap = -0.01; });
+  expect_bad("the overlap", [](Symmetry& s) { s.overlap = 1.01; });
+}
+
+TEST(DecodeDatabase, refuses_too_many_symmetries_and_any_out_of_order) {
+  expect_model_inconsistent("it has more than 512 exact symmetries",
+                            [](CompiledModel& m) { m.symmetries.insert(m.symmetries.begin(), 512, m.symmetries[0]); });
+  expect_model_inconsistent("it has more than 32 near symmetries",
+                            [](CompiledModel& m) { m.symmetries.insert(m.symmetries.end(), 32, m.symmetries[1]); });
+  expect_model_inconsistent("the exact symmetries do not come first",
+                            [](CompiledModel& m) { std::swap(m.symmetries[0], m.symmetries[1]); });
+}
+
+TEST(DecodeDatabase, refuses_rotations_of_symmetries_that_are_not_3_by_3) {
+  for (const int numbers : {0, 8, 10}) {
+    const std::string bytes = with_messages(
+        [&](v1::Header&, v1::Model& m) { m.mutable_symmetries(0)->mutable_rotation()->Resize(numbers, 0.0); });
+    EXPECT_EQ(error_of(bytes).fault(), DatabaseFault::inconsistent) << numbers;
+    EXPECT_NE(error_of(bytes).cause().find("nine"), std::string::npos);
+  }
+}
+
+TEST(DecodeDatabase, takes_databases_of_compilers_that_knew_no_symmetries) {
+  const std::string bytes = with_messages([](v1::Header&, v1::Model& m) { m.clear_symmetries(); });
+  EXPECT_TRUE(decode_database(bytes, "x.db").models[0].symmetries.empty());
+}
+
 TEST(CheckMethod, two_way_needs_an_acceptance_model_of_every_object) {
   RecognizeOptions paper;
   paper.method = Method::paper;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/errors.h"
+#include "runtime/canonical_pose.h"
 #include "tests/images.h"
 #include "tests/runtime/compiled_objects.h"
 
@@ -142,6 +143,63 @@ TEST(Recognize, gives_the_same_result_twice) {
   for (const Method method : kMethods) {
     expect_same(recognize_in(two_objects().scan.image, with(method)),
                 recognize_in(two_objects().scan.image, with(method)));
+  }
+}
+
+// Scenes that show the castle, which has three symmetries beside the identity.
+std::vector<Scene> castle_scenes() {
+  std::vector<Scene> scenes;
+  for (std::uint64_t index = 0; scenes.size() < 5; ++index) {
+    Scene scene = visible_scene(1, index);
+    if (scene.objects[0].model == 0) scenes.push_back(std::move(scene));
+  }
+  return scenes;
+}
+
+TEST(Recognize, reports_the_canonical_one_of_equivalent_poses_by_default) {
+  const CompiledModel& castle = compiled_objects().models()[0];
+  for (const Scene& scene : castle_scenes()) {
+    const RecognitionResult result = recognize_in(scene.scan.image);
+    ASSERT_FALSE(result.detections.empty());
+    const Detection& detection = result.detections[0];
+    ASSERT_EQ(detection.object, castle.name);
+    EXPECT_TRUE(is_right(detection, scene));
+    const Pose pose = pose_of(detection);
+    EXPECT_TRUE(canonical_pose(castle, pose).rotation.isApprox(pose.rotation, 1e-12));
+    const Pose truth = canonical_pose(castle, scene.objects[0].T_sensor_model);
+    EXPECT_LT(rotation_angle(truth.rotation.transpose() * pose.rotation), 0.1);
+  }
+}
+
+TEST(Recognize, reports_poses_as_found_with_the_papers_method) {
+  const CompiledModel& castle = compiled_objects().models()[0];
+  int others = 0;
+  for (const Scene& scene : castle_scenes()) {
+    for (const Detection& detection : recognize_in(scene.scan.image, with(Method::paper)).detections) {
+      if (detection.object != castle.name) continue;
+      const Pose pose = pose_of(detection);
+      others += canonical_pose(castle, pose).rotation.isApprox(pose.rotation, 1e-12) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(others, 0) << "one of four is canonical by chance";
+}
+
+TEST(Recognize, lists_faces_that_lie_at_the_reported_pose_where_their_regions_are) {
+  for (const Scene& scene : castle_scenes()) {
+    const auto regions = extract_regions(scene.scan.image, camera(), compiled_objects().content().segmentation);
+    for (const Method method : kMethods) {
+      for (const Detection& detection : recognize_in(scene.scan.image, with(method)).detections) {
+        if (!is_right(detection, scene)) continue;
+        const CompiledModel& model = compiled_objects().models()[detection.object == "castle" ? 0 : 1];
+        const Pose pose = pose_of(detection);
+        for (std::size_t i = 0; i < detection.faces.size(); ++i) {
+          const ModelFace& face = model.faces[static_cast<std::size_t>(detection.faces[i])];
+          const DescribedRegion& region = regions[static_cast<std::size_t>(detection.regions[i])];
+          EXPECT_GT((pose.rotation * face.normal).dot(region.region.normal), 0.9);
+          EXPECT_LT(std::abs((pose.inverse() * region.centroid).dot(face.normal) - face.offset), 4.0);
+        }
+      }
+    }
   }
 }
 

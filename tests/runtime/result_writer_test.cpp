@@ -15,6 +15,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Alternative turned(const char* object, Random& random) {
+  Alternative alternative{object, {}, random.uniform()};
+  for (double& entry : alternative.T_sensor_model) entry = random.gaussian() * 1000.0;
+  return alternative;
+}
+
 RecognitionResult sample() {
   Random random(7);
   RecognitionResult result;
@@ -29,6 +35,7 @@ RecognitionResult sample() {
     detection.rank = 2;
     detection.faces = {3, 7, 8};
     detection.regions = {2, 5, 6};
+    if (result.detections.empty()) detection.ambiguous_with = {turned("castle", random), turned("holed_cube", random)};
     result.detections.push_back(detection);
   }
   result.statistics = {5, 902, 123, 48, 408, 2, 131, 57};
@@ -48,8 +55,11 @@ TEST(ResultJson, has_the_documented_keys_in_order) {
   const Json json = Json::parse(line);
   using Keys = std::vector<std::string>;
   EXPECT_EQ(keys(json), (Keys{"scan", "complete", "detections", "statistics", "milliseconds"}));
-  EXPECT_EQ(keys(json["detections"][0]),
-            (Keys{"object", "pose", "score", "alpha", "beta", "gamma", "rank", "faces", "regions"}));
+  for (const Json& detection : json["detections"]) {
+    EXPECT_EQ(keys(detection), (Keys{"object", "pose", "score", "alpha", "beta", "gamma", "rank", "faces", "regions",
+                                     "ambiguous_with"}));
+  }
+  EXPECT_EQ(keys(json["detections"][0]["ambiguous_with"][0]), (Keys{"object", "pose", "score"}));
   EXPECT_EQ(keys(json["statistics"]), (Keys{"regions", "possible_matches", "threshold_matches", "active_matches",
                                             "hypotheses", "verifications", "energy_evaluations", "pose_checks"}));
   EXPECT_EQ(keys(json["milliseconds"]),
@@ -59,6 +69,22 @@ TEST(ResultJson, has_the_documented_keys_in_order) {
   EXPECT_EQ(json["statistics"]["pose_checks"], 57);
   EXPECT_EQ(json["detections"][1]["object"], "tee");
   EXPECT_EQ(json["detections"][1]["faces"], (std::vector<int>{3, 7, 8}));
+}
+
+TEST(ResultJson, lists_what_else_a_view_fits_and_an_empty_list_for_nothing) {
+  const RecognitionResult result = sample();
+  const Json json = Json::parse(result_json("x", result, 0.0));
+  const Json& others = json["detections"][0]["ambiguous_with"];
+  ASSERT_EQ(others.size(), 2U);
+  EXPECT_EQ(others[0]["object"], "castle");
+  EXPECT_EQ(others[1]["object"], "holed_cube");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Alternative& wrote = result.detections[0].ambiguous_with[i];
+    EXPECT_EQ(others[i]["score"].get<double>(), wrote.score);
+    for (std::size_t j = 0; j < 16; ++j)
+      EXPECT_EQ(others[i]["pose"][j / 4][j % 4].get<double>(), wrote.T_sensor_model[j]);
+  }
+  EXPECT_EQ(json["detections"][1]["ambiguous_with"], Json::array());
 }
 
 TEST(ResultJson, keeps_every_bit_of_every_number) {
@@ -105,6 +131,28 @@ TEST(ResultText, names_every_object_and_hides_control_characters) {
   EXPECT_NE(text.find("408 hypotheses"), std::string::npos);
   EXPECT_NE(text.find("8.8 ms"), std::string::npos);
   EXPECT_NE(result_text("x", RecognitionResult{}, 0.0).find("nothing recognized"), std::string::npos);
+}
+
+TEST(ResultText, has_a_line_for_each_alternative) {
+  RecognitionResult result = sample();
+  const auto lines = [&] {
+    const std::string text = result_text("x", result, 0.0);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  result.detections[0].ambiguous_with[1].object = "holed\ncube";
+  EXPECT_NE(result_text("x", result, 0.0).find("ambiguous with castle  score 0."), std::string::npos);
+  EXPECT_NE(result_text("x", result, 0.0).find("ambiguous with holed?cube  score 0."), std::string::npos);
+  const auto with_both = lines();
+  result.detections[0].ambiguous_with.clear();
+  EXPECT_EQ(lines(), with_both - 2);
+  EXPECT_EQ(result_text("x", result, 0.0).find("ambiguous"), std::string::npos);
+}
+
+TEST(BopCsv, does_not_speak_of_alternatives) {
+  RecognitionResult result = sample();
+  const std::string rows = bop_csv_rows("x", result, {"castle", "tee"}, 0.0);
+  result.detections[0].ambiguous_with.clear();
+  EXPECT_EQ(bop_csv_rows("x", result, {"castle", "tee"}, 0.0), rows);
 }
 
 TEST(BopCsv, has_seven_columns_and_rows_that_read_back) {

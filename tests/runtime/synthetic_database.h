@@ -47,6 +47,8 @@ inline CompiledModel synthetic_model(const std::string& name, double scale) {
     model.pairs.push_back(pair);
   }
   model.acceptance = {{4.5, -3.25, -1.75, -0.5 * scale, 2.125}, -0.375, 0.4, 77};
+  model.symmetries = {{{rotation_from_vector({0.0, 0.0, 2.0}), {0.5 * scale, -7.0, 0.25}}, true, 1.0},
+                      {{rotation_from_vector({1.5, -0.5, 0.125}), {-scale, 3.5, 11.0}}, false, 0.8125}};
   const auto length = static_cast<float>(scale);
   model.surface.spacing = 5.5;
   model.surface.points = {{{0.0F, 0.1F, length}, {0.0F, 0.0F, 1.0F}, {0}, {1, 2}},

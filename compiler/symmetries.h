@@ -19,4 +19,10 @@ struct SymmetryOptions {
 // a face or an edge play no part: they belong to the triangulation, not to the solid.
 [[nodiscard]] std::vector<Pose> find_symmetries(const CadModel& model, const SymmetryOptions& options = {});
 
+// The same motions as a group: products of any two are among them to rounding, so that a pose has the same equivalent
+// poses from whichever of them one starts. Where tolerances leave a product out, what breaks the rule goes. The
+// identity alone where there are more than `most` (a cylinder of very many facets: a part of its turns would be no
+// group) or more than 1000 faces (whose search would take minutes).
+[[nodiscard]] std::vector<Pose> symmetry_group(const CadModel& model, int most, const SymmetryOptions& options = {});
+
 }  // namespace foresight

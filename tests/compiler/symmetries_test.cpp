@@ -1,9 +1,10 @@
-#include "benchmarks/symmetries.h"
+#include "compiler/symmetries.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "common/random.h"
 #include "tests/benchmarks/solids.h"
 #include "tests/support.h"
 
@@ -72,6 +73,51 @@ TEST(Symmetries, ignore_vertices_that_only_the_triangulation_has) {
 TEST(Symmetries, end_where_a_side_is_longer_by_more_than_the_tolerance) {
   EXPECT_EQ(find_symmetries(test::cuboid(50, 50, 50.05)).size(), 24U);
   EXPECT_EQ(find_symmetries(test::cuboid(50, 50, 51)).size(), 8U);
+}
+
+// Products of any two are among them, the identity is the first.
+void expect_group(const std::vector<Pose>& group, double tolerance) {
+  EXPECT_EQ(group.front().rotation, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(group.front().translation, Eigen::Vector3d::Zero());
+  for (const Pose& a : group) {
+    for (const Pose& b : group) {
+      const Pose product = a * b;
+      EXPECT_TRUE(std::any_of(group.begin(), group.end(), [&](const Pose& pose) {
+        return (pose.rotation - product.rotation).cwiseAbs().maxCoeff() < tolerance &&
+               (pose.translation - product.translation).cwiseAbs().maxCoeff() < 100.0 * tolerance;
+      }));
+    }
+  }
+}
+
+TEST(SymmetryGroup, is_closed) {
+  expect_group(symmetry_group(test::cuboid(50, 50, 50), 512), 1e-12);
+  expect_group(symmetry_group(read_cad_model(test::project_file("models/castle.off")), 512), 1e-12);
+  EXPECT_EQ(symmetry_group(test::cuboid(50, 50, 50), 512).size(), 24U);
+}
+
+TEST(SymmetryGroup, is_closed_to_rounding_where_the_mesh_is_not_exact) {
+  CadModel model = test::cuboid(50, 50, 50);
+  Random random(8);
+  for (Eigen::Vector3d& vertex : model.vertices) vertex += 1e-4 * random.direction() + Eigen::Vector3d(7, 3, 1);
+  find_planar_faces(model, {});
+  const std::vector<Pose> group = symmetry_group(model, 512);
+  EXPECT_EQ(group.size(), 24U);
+  expect_group(group, 1e-11);
+}
+
+TEST(SymmetryGroup, drops_what_tolerances_leave_without_its_products) {
+  // Each side is within the tolerance of the next, the first not of the last.
+  const CadModel model = test::cuboid(50, 50.16, 50.32);
+  const std::vector<Pose> group = symmetry_group(model, 512);
+  EXPECT_LT(group.size(), 24U);
+  EXPECT_GE(group.size(), 4U);
+  expect_group(group, 1e-9);
+}
+
+TEST(SymmetryGroup, is_the_identity_where_there_are_more_than_asked_for) {
+  EXPECT_EQ(symmetry_group(test::cuboid(50, 50, 50), 24).size(), 24U);
+  EXPECT_EQ(symmetry_group(test::cuboid(50, 50, 50), 23).size(), 1U);
 }
 
 }  // namespace

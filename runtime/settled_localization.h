@@ -1,0 +1,24 @@
+// Localization as the two-way method does it: the paper's (Section V), and then the pose settled on planes.
+#pragma once
+
+#include "runtime/pose_check.h"
+#include "runtime/pose_evidence.h"
+#include "runtime/scan_context.h"
+
+namespace foresight {
+
+// Of data that agree with a start pose, before localization. Unit: mm.
+inline constexpr double kStartDistance = 8.0;
+
+// How a scan is looked at to settle a pose: planes farther away than what localization leaves are other planes.
+[[nodiscard]] PoseCheckOptions settling_options(const SensorModel& sensor);
+
+// Localization ends within its steps of a millimetre and a degree; the planes of regions, fitted to hundreds of cells,
+// know better. The settled pose is taken where the scan agrees with it more. Template points without data near pull
+// nowhere (LocalizationOptions::reach): starts are near, and searches for far data are most of the time at wrong ones.
+// settling: of this scan, with settling_options.
+[[nodiscard]] Localization localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model,
+                                               const Pose& start, const RecognizeOptions& options,
+                                               PoseChecker& settling);
+
+}  // namespace foresight
