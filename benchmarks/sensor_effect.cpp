@@ -1,0 +1,242 @@
+// What does it bring that priors know noise, shadow, distance and grazing loss? The paper's knew none of them, and its
+// conclusion (Section VII) names them as what a comprehensive sensor model should have. The same scans, recognized with
+// databases that differ in their priors only.
+#include <algorithm>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "benchmarks/commands.h"
+#include "benchmarks/intervals.h"
+#include "benchmarks/real_scans.h"
+#include "benchmarks/result_plots.h"
+#include "benchmarks/sensor_variants.h"
+#include "benchmarks/series.h"
+#include "common/errors.h"
+#include "runtime/match_likelihoods.h"
+
+namespace foresight {
+namespace {
+
+// A scan with what each of its cells shows; labels name the truth's objects.
+struct LabelledTrueScan {
+  TrueScan scan;
+  std::vector<CellLabel> labels;
+};
+
+struct ScanSet {
+  std::string name;
+  int count = 0;
+  std::function<LabelledTrueScan(int)> draw;
+};
+
+// Priors of one kind, with everything recognized with them.
+struct VariantRun {
+  std::string name;
+  std::unique_ptr<const Database> database;
+  std::vector<Contestant> contestants;
+  std::vector<std::vector<SceneRecord>> records;  // by contestant, by scan
+  std::vector<long> true_matches, kept;           // by scan
+};
+
+struct TrueMatch {
+  int region, model, face;
+};
+
+// A region's true match is with the face that most of its cells show.
+std::vector<TrueMatch> true_matches(const LabelledTrueScan& scan, const std::vector<CadModel>& models,
+                                    const std::vector<DescribedRegion>& regions) {
+  std::vector<FaceIndex> numbered;  // the faces of all objects, numbered through
+  std::vector<int> first;
+  for (const TrueObject& object : scan.scan.truth) {
+    first.push_back(static_cast<int>(numbered.size()));
+    const std::size_t faces = models[static_cast<std::size_t>(object.object)].faces.size();
+    for (std::size_t face = 0; face < faces; ++face) numbered.push_back({object.object, static_cast<int>(face)});
+  }
+  std::vector<CellLabel> labels = scan.labels;
+  for (CellLabel& label : labels) {
+    if (label.object >= 0) label.face += first[static_cast<std::size_t>(label.object)];
+  }
+  std::vector<TrueMatch> matches;
+  for (const RegionFace& pair : pair_regions_with_faces(regions, labels)) {
+    const FaceIndex& shown = numbered[static_cast<std::size_t>(pair.face)];
+    matches.push_back({pair.region, shown.model, shown.face});
+  }
+  return matches;
+}
+
+// How many of them have a likelihood above 0.
+long count_kept(const std::vector<TrueMatch>& truth, const std::vector<DescribedRegion>& regions,
+                const Database& database) {
+  const auto matches = match_likelihoods(regions, database, background_for(database.content().density));
+  return std::count_if(truth.begin(), truth.end(), [&](const TrueMatch& true_match) {
+    return std::any_of(matches.begin(), matches.end(), [&](const Match& match) {
+      const FaceIndex& face = database.faces()[static_cast<std::size_t>(match.face)];
+      return match.region == true_match.region && face.model == true_match.model && face.face == true_match.face;
+    });
+  });
+}
+
+ScanSet simulated_scans(const SeriesSetup& setup, const ExperimentOptions& options) {
+  return {"scanner", options.n, [&setup, seed = options.seed](int i) {
+            Scene scene = single_object_scene(setup.models, setup.sensor, setup.sensor.background, seed, i);
+            std::vector<CellLabel> labels = std::move(scene.scan.labels);
+            return LabelledTrueScan{
+                {std::to_string(i), std::move(scene.scan.image), setup.sensor.camera, truth_of(scene)},
+                std::move(labels)};
+          }};
+}
+
+// Their labels are those of the scene as its truth has it.
+ScanSet abw_scans(const SeriesSetup& setup, const std::string& abw) {
+  const std::string truth_file = abw + "/truth.json";
+  const auto scans = std::make_shared<const std::vector<ScanTruth>>(read_truth_file(truth_file));
+  return {"abw", static_cast<int>(scans->size()), [&setup, scans, abw, truth_file](int i) {
+            const ScanTruth& of_scan = (*scans)[static_cast<std::size_t>(i)];
+            Scan scan = read_abw_scan(abw, of_scan);
+            std::vector<TrueObject> truth = check_truth(of_scan, setup.models, truth_file);
+            std::vector<PlacedObject> placed;
+            for (const TrueObject& object : truth)
+              placed.push_back({&setup.models[static_cast<std::size_t>(object.object)], object.poses.front()});
+            SensorModel sensor = setup.sensor;
+            sensor.camera = *scan.camera;
+            std::vector<CellLabel> labels = SimulatedScene(placed).scan(sensor, Random(1)).labels;
+            return LabelledTrueScan{{of_scan.scan, std::move(scan.image), sensor.camera, std::move(truth)},
+                                    std::move(labels)};
+          }};
+}
+
+std::vector<VariantRun> compile_variants(const ExperimentOptions& options, const SeriesSetup& setup, int scans) {
+  const std::vector<SensorVariant> variants = sensor_variants(setup.sensor);
+  std::vector<VariantRun> runs(variants.size());
+  run_in_parallel(options, "priors", static_cast<int>(variants.size()), [&](int i) {
+    VariantRun& run = runs[static_cast<std::size_t>(i)];
+    const SensorVariant& variant = variants[static_cast<std::size_t>(i)];
+    run.name = variant.name;
+    run.database = std::make_unique<const Database>(
+        variant.sensor == setup.sensor ? setup.database->content()
+                                       : with_priors_of(variant.sensor, setup.database->content(), setup.models));
+    run.contestants = contestants(options, setup.models, setup.sensor, *run.database);
+    run.records.assign(run.contestants.size(), std::vector<SceneRecord>(static_cast<std::size_t>(scans)));
+    run.true_matches.resize(static_cast<std::size_t>(scans));
+    run.kept.resize(static_cast<std::size_t>(scans));
+  });
+  return runs;
+}
+
+// Every scan is drawn and extracted once for all variants: they have the same extraction settings.
+void recognize_all(const ExperimentOptions& options, const SeriesSetup& setup, const ScanSet& set,
+                   std::vector<VariantRun>& runs) {
+  run_in_parallel(options, "recognize", set.count, [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    const LabelledTrueScan scan = set.draw(i);
+    const auto regions = extract_regions(scan.scan.image, scan.scan.camera, setup.database->content().segmentation);
+    const std::vector<TrueMatch> truth = true_matches(scan, setup.models, regions);
+    for (VariantRun& run : runs) {
+      run.true_matches[index] = static_cast<long>(truth.size());
+      run.kept[index] = count_kept(truth, regions, *run.database);
+      for (std::size_t c = 0; c < run.contestants.size(); ++c) {
+        run.records[c][index] =
+            recognize_and_score({setup.models, setup.objects, setup.sensor}, run.contestants[c], scan.scan);
+      }
+    }
+  });
+}
+
+std::vector<std::string> with_interval(long hits, long trials) {
+  const Interval interval = wilson_interval(hits, trials);
+  return {decimal(trials == 0 ? std::numeric_limits<double>::quiet_NaN()
+                              : 100.0 * static_cast<double>(hits) / static_cast<double>(trials),
+                  1),
+          decimal(100.0 * interval.low, 1), decimal(100.0 * interval.high, 1)};
+}
+
+long sum(const std::vector<long>& values) { return std::accumulate(values.begin(), values.end(), 0L); }
+
+// Times last: they alone differ between runs.
+Table table_of(const std::vector<VariantRun>& runs, const std::vector<SummaryRow>& rows, std::uint64_t seed) {
+  Table table;
+  table.header = {"method",
+                  "priors from",
+                  "seed",
+                  "scans",
+                  "true matches",
+                  "kept %",
+                  "low",
+                  "high",
+                  "objects",
+                  "right pose %",
+                  "right low",
+                  "right high",
+                  "false positives",
+                  "wrong poses",
+                  "hypotheses",
+                  "verifications",
+                  "ms"};
+  for (const SummaryRow& row : rows) {
+    const auto run = std::find_if(runs.begin(), runs.end(), [&](const VariantRun& r) { return r.name == row.label; });
+    std::vector<std::string> line = {row.method, row.label, std::to_string(seed), std::to_string(row.scenes),
+                                     std::to_string(sum(run->true_matches))};
+    const auto append = [&](const std::vector<std::string>& cells) {
+      line.insert(line.end(), cells.begin(), cells.end());
+    };
+    append(with_interval(sum(run->kept), sum(run->true_matches)));
+    append({std::to_string(row.objects)});
+    append(with_interval(row.right, row.objects));
+    append({std::to_string(row.false_positives), std::to_string(row.wrong_poses), decimal(row.hypotheses, 1),
+            decimal(row.verifications, 2), decimal(row.milliseconds.total, 1)});
+    table.rows.push_back(std::move(line));
+  }
+  return table;
+}
+
+void run_sensor_effect(ExperimentOptions options, const std::string& scans, const std::string& abw) {
+  const bool real = scans == "abw";
+  if (real && options.cad_files.empty()) options.cad_files = cad_files_in(abw + "/models");
+  const SeriesSetup setup = set_up_series(options, project_path("models/sensors/" + scans + ".textproto"));
+  make_folder(options.output);
+  const ScanSet set = real ? abw_scans(setup, abw) : simulated_scans(setup, options);
+  std::vector<VariantRun> runs = compile_variants(options, setup, set.count);
+  recognize_all(options, setup, set, runs);
+
+  std::vector<SummaryRow> rows;  // method by method
+  for (std::size_t c = 0; c < setup.contestants.size(); ++c) {
+    for (const VariantRun& run : runs) rows.push_back(summarize(run.name, run.records[c], {0.5, 2.0}));
+  }
+  const std::string name = "sensor_effect_" + set.name;
+  write_csv(options, name, table_of(runs, rows, options.seed));
+  write_plots(options.output + "/" + name + ".svg", {right_pose_plot("priors from the sensor with ...", rows)});
+  std::cout << "sensor-effect, scans " << set.name << ", objects at least half visible\n"
+            << to_text(table_of(runs, rows, options.seed));
+  if (options.jobs > 1)
+    std::cout << "times: of " << options.jobs << " scans at once; use --jobs 1 for times that mean something\n";
+}
+
+}  // namespace
+
+Experiment add_sensor_effect(CLI::App& app) {
+  const auto options = std::make_shared<ExperimentOptions>();
+  const auto folder = std::make_shared<std::string>();
+  const auto scans = std::make_shared<std::string>("scanner");
+  CLI::App* command = app.add_subcommand(
+      "sensor-effect",
+      "Priors from the sensor and from what is left of it without noise, shadow, distances, incidence");
+  options->methods = {"two-way"};
+  add_common_options(*command, *options, 80);
+  add_data_option(*command, *folder);
+  command
+      ->add_option("--scans", *scans,
+                   "scanner: --n scenes as `scanner` draws them; abw: the real scans (skipped without the data)")
+      ->check(CLI::IsMember({"scanner", "abw"}))
+      ->capture_default_str();
+  command->add_option("--cad", options->cad_files, "CAD files, one object each; those of the scans when not given");
+  add_method_options(*command, *options);
+  return {command, [options, folder, scans] {
+            if (*scans == "scanner" || has_abw_scans(*folder, "sensor-effect"))
+              run_sensor_effect(*options, *scans, *folder + "/abw");
+            return static_cast<int>(kExitDone);
+          }};
+}
+
+}  // namespace foresight
