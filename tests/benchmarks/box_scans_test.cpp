@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
-#include <numeric>
 
 #include "common/errors.h"
 #include "common/scan_file.h"

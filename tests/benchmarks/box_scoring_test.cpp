@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numbers>
-#include <numeric>
 
-#include "benchmarks/real_scans.h"
 #include "compiler/sensor_file.h"
 #include "compiler/sensor_simulator.h"
 #include "tests/benchmarks/solids.h"
@@ -141,7 +140,7 @@ Pose laid_on(const BoxMask& mask, double height) {
   return pose;
 }
 
-TEST(BoxesByHand, laid_on_the_tops_of_real_masks_most_are_found_and_shifted_none) {
+TEST(BoxesByHand, laid_on_the_tops_of_real_masks_are_found_and_shifted_are_not) {
   const std::string data = test::real_data_folder();
   if (data.empty()) GTEST_SKIP() << "no real data beside the checkout";
   std::vector<CadModel> cads = {test::cuboid(340, 250, 95), test::cuboid(255, 155, 100)};
@@ -164,15 +163,9 @@ TEST(BoxesByHand, laid_on_the_tops_of_real_masks_most_are_found_and_shifted_none
     masks += static_cast<long>(frame.masks.size());
     found += count_found(score_boxes(scene, laid));
     EXPECT_EQ(count_found(score_boxes(scene, shifted)), 0) << frame.name;
-    for (std::size_t m = 0; m < frame.masks.size(); ++m) {
-      const DrawnOnCells d = drawn_on(models[static_cast<std::size_t>(laid[m].object)], laid[m].T_sensor_model,
-                                      frame.image, camera, frame.masks[m].cells);
-      std::printf("%s visible %.2f top %.2f share %.2f residual %.1f\n", frame.masks[m].name.c_str(),
-                  frame.masks[m].visible, frame.masks[m].top.attributes[kArea], d.share, d.residual);
-    }
   }
   EXPECT_EQ(masks, 13);
-  EXPECT_GE(found, 10);
+  EXPECT_EQ(found, masks);
 }
 
 }  // namespace
