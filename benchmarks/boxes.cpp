@@ -125,18 +125,22 @@ Table detail_table(const std::vector<std::vector<FrameResult>>& results, const S
   return table;
 }
 
-// Reports as wireframes; borders of masks white.
-Picture draw_frame(const FrameResult& result, const SeriesSetup& setup) {
-  const RangeImage& image = result.frame->image;
-  Picture picture = draw_scene(image, setup.sensor.camera, setup.models, {}, result.record.reported);
-  for (const BoxMask& mask : result.frame->masks) {
+void paint_borders(Picture& picture, const std::vector<BoxMask>& masks, const Colour& colour) {
+  for (const BoxMask& mask : masks) {
     const auto inside = [&](int cell) { return std::binary_search(mask.cells.begin(), mask.cells.end(), cell); };
     for (const int cell : mask.cells) {
-      if (inside(cell - 1) && inside(cell + 1) && inside(cell - image.columns) && inside(cell + image.columns))
-        continue;
-      picture.paint(cell / image.columns, cell % image.columns, {255, 255, 255});
+      const int columns = picture.columns;
+      if (inside(cell - 1) && inside(cell + 1) && inside(cell - columns) && inside(cell + columns)) continue;
+      picture.paint(cell / columns, cell % columns, colour);
     }
   }
+}
+
+// Reports as wireframes; borders of masks white, of those of the other frames yellow.
+Picture draw_frame(const FrameResult& result, const std::vector<BoxMask>& elsewhere, const SeriesSetup& setup) {
+  Picture picture = draw_scene(result.frame->image, setup.sensor.camera, setup.models, {}, result.record.reported);
+  paint_borders(picture, elsewhere, {200, 180, 60});
+  paint_borders(picture, result.frame->masks, {255, 255, 255});
   return picture;
 }
 
@@ -193,7 +197,7 @@ void run_boxes(ExperimentOptions options, const std::string& folder) {
       scored.push_back({&frames[f], of_method[f], score_boxes(scene, of_method[f].reported)});
       rows.push_back(row_of(frames[f].name, {scored.back()}));
       write_picture(options.output + "/boxes_" + of_method[f].method + "_" + frames[f].name + ".png",
-                    draw_frame(scored.back(), setup));
+                    draw_frame(scored.back(), elsewhere, setup));
     }
     rows.push_back(row_of("all", scored));
   }
