@@ -5,7 +5,6 @@
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <numeric>
 
 #include "benchmarks/commands.h"
 #include "benchmarks/intervals.h"
@@ -37,7 +36,7 @@ struct VariantRun {
   std::unique_ptr<const Database> database;
   std::vector<Contestant> contestants;
   std::vector<std::vector<SceneRecord>> records;  // by contestant, by scan
-  std::vector<long> true_matches, kept;           // by scan
+  std::vector<std::vector<bool>> kept;            // by scan, by true match: whether its likelihood is above 0
 };
 
 struct TrueMatch {
@@ -66,16 +65,41 @@ std::vector<TrueMatch> true_matches(const LabelledTrueScan& scan, const std::vec
   return matches;
 }
 
-// How many of them have a likelihood above 0.
-long count_kept(const std::vector<TrueMatch>& truth, const std::vector<DescribedRegion>& regions,
-                const Database& database) {
+// Which of them have a likelihood above 0.
+std::vector<bool> kept_matches(const std::vector<TrueMatch>& truth, const std::vector<DescribedRegion>& regions,
+                               const Database& database) {
   const auto matches = match_likelihoods(regions, database, background_for(database.content().density));
-  return std::count_if(truth.begin(), truth.end(), [&](const TrueMatch& true_match) {
-    return std::any_of(matches.begin(), matches.end(), [&](const Match& match) {
+  std::vector<bool> kept;
+  for (const TrueMatch& true_match : truth) {
+    kept.push_back(std::any_of(matches.begin(), matches.end(), [&](const Match& match) {
       const FaceIndex& face = database.faces()[static_cast<std::size_t>(match.face)];
       return match.region == true_match.region && face.model == true_match.model && face.face == true_match.face;
-    });
-  });
+    }));
+  }
+  return kept;
+}
+
+// Of the true matches of all scans.
+struct Kept {
+  long matches = 0;
+  long kept = 0;
+  long gained = 0;  // kept here, not with the first variant
+  long lost = 0;    // the other way round
+};
+
+Kept count_kept(const VariantRun& run, const VariantRun& first) {
+  Kept count;
+  for (std::size_t scan = 0; scan < run.kept.size(); ++scan) {
+    for (std::size_t i = 0; i < run.kept[scan].size(); ++i) {
+      const bool here = run.kept[scan][i];
+      const bool before = first.kept[scan][i];
+      ++count.matches;
+      count.kept += here ? 1 : 0;
+      count.gained += here && !before ? 1 : 0;
+      count.lost += before && !here ? 1 : 0;
+    }
+  }
+  return count;
 }
 
 ScanSet simulated_scans(const SeriesSetup& setup, const ExperimentOptions& options) {
@@ -119,7 +143,6 @@ std::vector<VariantRun> compile_variants(const ExperimentOptions& options, const
                                        : with_priors_of(variant.sensor, setup.database->content(), setup.models));
     run.contestants = contestants(options, setup.models, setup.sensor, *run.database);
     run.records.assign(run.contestants.size(), std::vector<SceneRecord>(static_cast<std::size_t>(scans)));
-    run.true_matches.resize(static_cast<std::size_t>(scans));
     run.kept.resize(static_cast<std::size_t>(scans));
   });
   return runs;
@@ -134,8 +157,7 @@ void recognize_all(const ExperimentOptions& options, const SeriesSetup& setup, c
     const auto regions = extract_regions(scan.scan.image, scan.scan.camera, setup.database->content().segmentation);
     const std::vector<TrueMatch> truth = true_matches(scan, setup.models, regions);
     for (VariantRun& run : runs) {
-      run.true_matches[index] = static_cast<long>(truth.size());
-      run.kept[index] = count_kept(truth, regions, *run.database);
+      run.kept[index] = kept_matches(truth, regions, *run.database);
       for (std::size_t c = 0; c < run.contestants.size(); ++c) {
         run.records[c][index] =
             recognize_and_score({setup.models, setup.objects, setup.sensor}, run.contestants[c], scan.scan);
@@ -152,36 +174,23 @@ std::vector<std::string> with_interval(long hits, long trials) {
           decimal(100.0 * interval.low, 1), decimal(100.0 * interval.high, 1)};
 }
 
-long sum(const std::vector<long>& values) { return std::accumulate(values.begin(), values.end(), 0L); }
-
 // Times last: they alone differ between runs.
 Table table_of(const std::vector<VariantRun>& runs, const std::vector<SummaryRow>& rows, std::uint64_t seed) {
   Table table;
-  table.header = {"method",
-                  "priors from",
-                  "seed",
-                  "scans",
-                  "true matches",
-                  "kept %",
-                  "low",
-                  "high",
-                  "objects",
-                  "right pose %",
-                  "right low",
-                  "right high",
-                  "false positives",
-                  "wrong poses",
-                  "hypotheses",
-                  "verifications",
-                  "ms"};
+  table.header = {"method",      "priors from",  "seed",          "scans",      "true matches",
+                  "kept %",      "low",          "high",          "gained",     "lost",
+                  "objects",     "right pose %", "right low",     "right high", "false positives",
+                  "wrong poses", "hypotheses",   "verifications", "ms"};
   for (const SummaryRow& row : rows) {
     const auto run = std::find_if(runs.begin(), runs.end(), [&](const VariantRun& r) { return r.name == row.label; });
+    const Kept kept = count_kept(*run, runs.front());
     std::vector<std::string> line = {row.method, row.label, std::to_string(seed), std::to_string(row.scenes),
-                                     std::to_string(sum(run->true_matches))};
+                                     std::to_string(kept.matches)};
     const auto append = [&](const std::vector<std::string>& cells) {
       line.insert(line.end(), cells.begin(), cells.end());
     };
-    append(with_interval(sum(run->kept), sum(run->true_matches)));
+    append(with_interval(kept.kept, kept.matches));
+    append({std::to_string(kept.gained), std::to_string(kept.lost)});
     append({std::to_string(row.objects)});
     append(with_interval(row.right, row.objects));
     append({std::to_string(row.false_positives), std::to_string(row.wrong_poses), decimal(row.hypotheses, 1),
