@@ -30,7 +30,7 @@ struct FrameResult {
 struct BoxRow {
   std::string method, set;
   long frames = 0, masks = 0, found = 0, reported = 0, duplicates = 0, unmasked = 0, invented = 0;
-  double regions = 0.0, hypotheses = 0.0, verifications = 0.0, milliseconds = 0.0;  // means a frame
+  double regions = 0.0, matches = 0.0, hypotheses = 0.0, verifications = 0.0, milliseconds = 0.0;  // means a frame
 };
 
 BoxRow row_of(const std::string& set, const std::vector<FrameResult>& results) {
@@ -52,6 +52,7 @@ BoxRow row_of(const std::string& set, const std::vector<FrameResult>& results) {
     row.invented += verdicts(BoxVerdict::invented);
     const Statistics& statistics = result.record.statistics;
     row.regions += statistics.regions / frames;
+    row.matches += static_cast<double>(statistics.threshold_matches) / frames;
     row.hypotheses += static_cast<double>(statistics.hypotheses) / frames;
     row.verifications += static_cast<double>(statistics.verifications) / frames;
     row.milliseconds += result.record.milliseconds.total / frames;
@@ -67,16 +68,17 @@ double percent_found(const BoxRow& row) {
 // Times last: they alone differ between runs.
 Table table_of(const std::vector<BoxRow>& rows) {
   Table table;
-  table.header = {"method",   "set",        "frames",     "masks",    "found",   "found %",    "low",           "high",
-                  "reported", "duplicates", "on no mask", "invented", "regions", "hypotheses", "verifications", "ms"};
+  table.header = {"method",  "set",     "frames",     "masks",         "found",      "found %",
+                  "low",     "high",    "reported",   "duplicates",    "on no mask", "invented",
+                  "regions", "matches", "hypotheses", "verifications", "ms"};
   for (const BoxRow& row : rows) {
     const Interval interval = wilson_interval(row.found, row.masks);
     table.rows.push_back({row.method, row.set, std::to_string(row.frames), std::to_string(row.masks),
                           std::to_string(row.found), decimal(percent_found(row), 1), decimal(100.0 * interval.low, 1),
                           decimal(100.0 * interval.high, 1), std::to_string(row.reported),
                           std::to_string(row.duplicates), std::to_string(row.unmasked), std::to_string(row.invented),
-                          decimal(row.regions, 1), decimal(row.hypotheses, 1), decimal(row.verifications, 1),
-                          decimal(row.milliseconds, 1)});
+                          decimal(row.regions, 1), decimal(row.matches, 1), decimal(row.hypotheses, 1),
+                          decimal(row.verifications, 1), decimal(row.milliseconds, 1)});
   }
   return table;
 }

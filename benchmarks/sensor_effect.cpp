@@ -166,12 +166,14 @@ void recognize_all(const ExperimentOptions& options, const SeriesSetup& setup, c
   });
 }
 
+double percent(long hits, long trials) {
+  return trials == 0 ? std::numeric_limits<double>::quiet_NaN()
+                     : 100.0 * static_cast<double>(hits) / static_cast<double>(trials);
+}
+
 std::vector<std::string> with_interval(long hits, long trials) {
   const Interval interval = wilson_interval(hits, trials);
-  return {decimal(trials == 0 ? std::numeric_limits<double>::quiet_NaN()
-                              : 100.0 * static_cast<double>(hits) / static_cast<double>(trials),
-                  1),
-          decimal(100.0 * interval.low, 1), decimal(100.0 * interval.high, 1)};
+  return {decimal(percent(hits, trials), 1), decimal(100.0 * interval.low, 1), decimal(100.0 * interval.high, 1)};
 }
 
 // Times last: they alone differ between runs.
@@ -200,6 +202,26 @@ Table table_of(const std::vector<VariantRun>& runs, const std::vector<SummaryRow
   return table;
 }
 
+// True matches kept, in percent with their intervals.
+Plot kept_plot(const std::vector<VariantRun>& runs) {
+  Plot plot;
+  plot.title = "priors from the sensor with ...";
+  plot.y_label = "true matches kept, %";
+  plot.percent_y = true;
+  Curve& curve = plot.curves.emplace_back();
+  curve.style = Curve::Style::points;
+  for (const VariantRun& run : runs) {
+    const Kept kept = count_kept(run, runs.front());
+    const Interval interval = wilson_interval(kept.kept, kept.matches);
+    curve.x.push_back(static_cast<double>(plot.x_names.size()));
+    curve.y.push_back(percent(kept.kept, kept.matches));
+    curve.low.push_back(100.0 * interval.low);
+    curve.high.push_back(100.0 * interval.high);
+    plot.x_names.push_back(run.name);
+  }
+  return plot;
+}
+
 void run_sensor_effect(ExperimentOptions options, const std::string& scans, const std::string& abw) {
   const bool real = scans == "abw";
   if (real && options.cad_files.empty()) options.cad_files = cad_files_in(abw + "/models");
@@ -215,7 +237,8 @@ void run_sensor_effect(ExperimentOptions options, const std::string& scans, cons
   }
   const std::string name = "sensor_effect_" + set.name;
   write_csv(options, name, table_of(runs, rows, options.seed));
-  write_plots(options.output + "/" + name + ".svg", {right_pose_plot("priors from the sensor with ...", rows)});
+  write_plots(options.output + "/" + name + ".svg",
+              {kept_plot(runs), right_pose_plot("priors from the sensor with ...", rows)}, 2);
   std::cout << "sensor-effect, scans " << set.name << ", objects at least half visible\n"
             << to_text(table_of(runs, rows, options.seed));
   if (options.jobs > 1)
