@@ -131,7 +131,8 @@ ScanSet abw_scans(const SeriesSetup& setup, const std::string& abw) {
           }};
 }
 
-std::vector<VariantRun> compile_variants(const ExperimentOptions& options, const SeriesSetup& setup, int scans) {
+std::vector<VariantRun> compile_variants(const ExperimentOptions& options, const SeriesSetup& setup,
+                                         const FaceSampleOptions& samples, int scans) {
   const std::vector<SensorVariant> variants = sensor_variants(setup.sensor);
   std::vector<VariantRun> runs(variants.size());
   run_in_parallel(options, "priors", static_cast<int>(variants.size()), [&](int i) {
@@ -139,8 +140,7 @@ std::vector<VariantRun> compile_variants(const ExperimentOptions& options, const
     const SensorVariant& variant = variants[static_cast<std::size_t>(i)];
     run.name = variant.name;
     run.database = std::make_unique<const Database>(
-        variant.sensor == setup.sensor ? setup.database->content()
-                                       : with_priors_of(variant.sensor, setup.database->content(), setup.models));
+        with_priors_of(variant.sensor, setup.database->content(), setup.models, samples));
     run.contestants = contestants(options, setup.models, setup.sensor, *run.database);
     run.records.assign(run.contestants.size(), std::vector<SceneRecord>(static_cast<std::size_t>(scans)));
     run.kept.resize(static_cast<std::size_t>(scans));
@@ -222,13 +222,17 @@ Plot kept_plot(const std::vector<VariantRun>& runs) {
   return plot;
 }
 
-void run_sensor_effect(ExperimentOptions options, const std::string& scans, const std::string& abw) {
+void run_sensor_effect(ExperimentOptions options, const FaceSampleOptions& samples, const std::string& scans,
+                       const std::string& abw) {
   const bool real = scans == "abw";
   if (real && options.cad_files.empty()) options.cad_files = cad_files_in(abw + "/models");
   const SeriesSetup setup = set_up_series(options, project_path("models/sensors/" + scans + ".textproto"));
+  if (!(setup.database->content().sensor == setup.sensor))
+    throw InputError(options.database_file, "it was compiled for another sensor than that of the scans",
+                     "compile it for models/sensors/" + scans + ".textproto");
   make_folder(options.output);
   const ScanSet set = real ? abw_scans(setup, abw) : simulated_scans(setup, options);
-  std::vector<VariantRun> runs = compile_variants(options, setup, set.count);
+  std::vector<VariantRun> runs = compile_variants(options, setup, samples, set.count);
   recognize_all(options, setup, set, runs);
 
   std::vector<SummaryRow> rows;  // method by method
@@ -251,6 +255,7 @@ Experiment add_sensor_effect(CLI::App& app) {
   const auto options = std::make_shared<ExperimentOptions>();
   const auto folder = std::make_shared<std::string>();
   const auto scans = std::make_shared<std::string>("scanner");
+  const auto samples = std::make_shared<FaceSampleOptions>();
   CLI::App* command = app.add_subcommand(
       "sensor-effect",
       "Priors from the sensor and from what is left of it without noise, shadow, distances, incidence");
@@ -263,10 +268,15 @@ Experiment add_sensor_effect(CLI::App& app) {
       ->check(CLI::IsMember({"scanner", "abw"}))
       ->capture_default_str();
   command->add_option("--cad", options->cad_files, "CAD files, one object each; those of the scans when not given");
+  command->add_option("--database", options->database_file,
+                      "Database of these CAD files for the scans' sensor; compiled in this process when not given");
+  command->add_option("--views", samples->views, "Sample views of all priors, whatever those of the database")
+      ->check(CLI::IsMember({20, 80, 320, 1280}))
+      ->capture_default_str();
   add_method_options(*command, *options);
-  return {command, [options, folder, scans] {
+  return {command, [options, folder, scans, samples] {
             if (*scans == "scanner" || has_abw_scans(*folder, "sensor-effect"))
-              run_sensor_effect(*options, *scans, *folder + "/abw");
+              run_sensor_effect(*options, *samples, *scans, *folder + "/abw");
             return static_cast<int>(kExitDone);
           }};
 }
