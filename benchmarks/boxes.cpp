@@ -97,7 +97,8 @@ std::string name_of(BoxVerdict verdict) {
 }
 
 // One row a mask and one a report, numbered as they were accepted.
-Table detail_table(const std::vector<std::vector<FrameResult>>& results, const SeriesSetup& setup) {
+Table detail_table(const std::vector<std::vector<FrameResult>>& results, const SeriesSetup& setup,
+                   const std::vector<CompiledModel>& compiled) {
   Table table;
   table.header = {"method", "frame", "kind", "name", "verdict", "visible", "covered", "residual mm", "score"};
   for (const auto& of_method : results) {
@@ -108,7 +109,7 @@ Table detail_table(const std::vector<std::vector<FrameResult>>& results, const S
         const int by = result.verdicts.report_of_mask[m];
         DrawnOnCells drawn{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
         if (by >= 0) {
-          drawn = drawn_on(setup.database->models()[static_cast<std::size_t>(mask.object)],
+          drawn = drawn_on(compiled[static_cast<std::size_t>(mask.object)],
                            reported[static_cast<std::size_t>(by)].T_sensor_model, result.frame->image,
                            setup.sensor.camera, mask.cells);
         }
@@ -178,10 +179,22 @@ std::vector<BoxMask> masks_elsewhere(const std::vector<BoxFrame>& frames, std::s
   return masks;
 }
 
+// The database's models in the order of the CAD files, which reports and masks index.
+std::vector<CompiledModel> compiled_in_order(const SeriesSetup& setup) {
+  std::vector<CompiledModel> ordered(setup.models.size());
+  for (const CompiledModel& compiled : setup.database->models()) {
+    const auto same = std::find_if(setup.models.begin(), setup.models.end(),
+                                   [&](const CadModel& model) { return model.name == compiled.name; });
+    ordered[static_cast<std::size_t>(same - setup.models.begin())] = compiled;
+  }
+  return ordered;
+}
+
 void run_boxes(ExperimentOptions options, const std::string& folder) {
   if (options.cad_files.empty()) options.cad_files = cad_files_in(folder + "/models");
   const SeriesSetup setup = set_up_series(options, project_path("models/sensors/depth_camera.textproto"));
   const std::vector<BoxFrame> frames = read_box_frames(folder, setup.models, setup.sensor.camera);
+  const std::vector<CompiledModel> compiled = compiled_in_order(setup);
   make_folder(options.output);
 
   // Without truth: the records' own verdicts say nothing here.
@@ -195,7 +208,7 @@ void run_boxes(ExperimentOptions options, const std::string& folder) {
     std::vector<FrameResult>& scored = results.emplace_back();
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const std::vector<BoxMask> elsewhere = masks_elsewhere(frames, f);
-      const BoxScene scene{frames[f].image, setup.sensor.camera, setup.database->models(), frames[f].masks, elsewhere};
+      const BoxScene scene{frames[f].image, setup.sensor.camera, compiled, frames[f].masks, elsewhere};
       scored.push_back({&frames[f], of_method[f], score_boxes(scene, of_method[f].reported)});
       rows.push_back(row_of(frames[f].name, {scored.back()}));
       write_picture(options.output + "/boxes_" + of_method[f].method + "_" + frames[f].name + ".png",
@@ -204,7 +217,7 @@ void run_boxes(ExperimentOptions options, const std::string& folder) {
     rows.push_back(row_of("all", scored));
   }
   write_csv(options, "boxes", table_of(rows));
-  write_csv(options, "boxes_details", detail_table(results, setup));
+  write_csv(options, "boxes_details", detail_table(results, setup, compiled));
   write_plots(options.output + "/boxes.svg", {plot_of(rows)});
   std::cout << "boxes, tops at least " << decimal(100.0 * kLeastVisible, 0) << " % visible\n"
             << to_text(table_of(rows));

@@ -227,6 +227,11 @@ void run_sensor_effect(ExperimentOptions options, const FaceSampleOptions& sampl
   const bool real = scans == "abw";
   if (real && options.cad_files.empty()) options.cad_files = cad_files_in(abw + "/models");
   const SeriesSetup setup = set_up_series(options, project_path("models/sensors/" + scans + ".textproto"));
+  const std::vector<CompiledModel>& compiled = setup.database->models();
+  if (!std::equal(compiled.begin(), compiled.end(), setup.models.begin(), setup.models.end(),
+                  [](const CompiledModel& a, const CadModel& b) { return a.name == b.name; }))
+    throw InputError(options.database_file, "its objects are not those of the CAD files, in their order",
+                     "give the CAD files it was compiled from with --cad, in the same order");
   if (!(setup.database->content().sensor == setup.sensor))
     throw InputError(options.database_file, "it was compiled for another sensor than that of the scans",
                      "compile it for models/sensors/" + scans + ".textproto");
