@@ -25,10 +25,12 @@ struct Experiment {
 [[nodiscard]] Experiment add_unknown(CLI::App& app);         // no known object
 [[nodiscard]] Experiment add_localization(CLI::App& app);    // Table I
 [[nodiscard]] Experiment add_real(CLI::App& app);            // real scans
+[[nodiscard]] Experiment add_boxes(CLI::App& app);          // real frames of cartons
 [[nodiscard]] Experiment add_search(CLI::App& app);          // Section VI.C, against the interpretation tree
 [[nodiscard]] Experiment add_segmentation(CLI::App& app);    // extraction alone, real scans
 [[nodiscard]] Experiment add_constraints(CLI::App& app);     // Sections III and VI.A
 [[nodiscard]] Experiment add_potentials(CLI::App& app);      // Section IV
+[[nodiscard]] Experiment add_sensor_effect(CLI::App& app);   // Section III, what the sensor model takes into account
 
 // Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
 void add_common_options(CLI::App& command, ExperimentOptions& options, int n);

@@ -13,10 +13,12 @@ int main(int argc, char** argv) {
                                                           foresight::add_twins(app),           //
                                                           foresight::add_unknown(app),         //
                                                           foresight::add_real(app),            //
+                                                          foresight::add_boxes(app),           //
                                                           foresight::add_search(app),          //
                                                           foresight::add_segmentation(app),    //
                                                           foresight::add_constraints(app),     //
-                                                          foresight::add_potentials(app)};
+                                                          foresight::add_potentials(app),      //
+                                                          foresight::add_sensor_effect(app)};
   return foresight::run_program("experiments", app, argc, argv, [&] {
     for (const foresight::Experiment& experiment : experiments) {
       if (experiment.command->parsed()) return experiment.run();

@@ -18,14 +18,18 @@ std::string default_data_folder() {
 void add_data_option(CLI::App& command, std::string& folder) {
   folder = default_data_folder();
   command.add_option("--data", folder,
-                     "Data folder that holds abw/; FORESIGHT_DATA, or ../shared/data beside the checkout");
+                     "Data folder that holds abw/ and boxes/; FORESIGHT_DATA, or ../shared/data beside the checkout");
+}
+
+bool has_data_file(const std::string& folder, const std::string& file, const std::string& experiment) {
+  if (std::filesystem::exists(folder + "/" + file)) return true;
+  std::cout << experiment << ": skipped, there is no " << folder << "/" << file
+            << "; give the folder with --data or FORESIGHT_DATA\n";
+  return false;
 }
 
 bool has_abw_scans(const std::string& folder, const std::string& experiment) {
-  if (std::filesystem::exists(folder + "/abw/truth.json")) return true;
-  std::cout << experiment << ": skipped, there is no " << folder
-            << "/abw/truth.json; give the folder with --data or FORESIGHT_DATA\n";
-  return false;
+  return has_data_file(folder, "abw/truth.json", experiment);
 }
 
 std::vector<std::string> cad_files_in(const std::string& folder) {
@@ -35,7 +39,7 @@ std::vector<std::string> cad_files_in(const std::string& folder) {
     if (entry.path().extension() == ".obj") files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
-  if (files.empty()) throw InputError(folder, "it holds no .obj file", "give a data folder with abw/models");
+  if (files.empty()) throw InputError(folder, "it holds no .obj file", "give a data folder with models");
   return files;
 }
 

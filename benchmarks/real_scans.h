@@ -20,6 +20,9 @@ namespace foresight {
 // --data, with that default.
 void add_data_option(CLI::App& command, std::string& folder);
 
+// Whether the folder holds a file; says on the terminal that `experiment` is skipped where it does not.
+[[nodiscard]] bool has_data_file(const std::string& folder, const std::string& file, const std::string& experiment);
+
 // Whether the folder holds the ABW scans; says on the terminal that `experiment` is skipped where it does not.
 [[nodiscard]] bool has_abw_scans(const std::string& folder, const std::string& experiment);
 

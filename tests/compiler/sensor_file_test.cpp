@@ -64,7 +64,7 @@ TEST(SensorFile, paper_sensor_is_what_its_file_says) {
 }
 
 TEST(SensorFile, every_sensor_of_the_project_is_read) {
-  for (const std::string name : {"paper", "scanner", "abw"}) {
+  for (const std::string name : {"paper", "scanner", "abw", "depth_camera"}) {
     const SensorModel sensor = read_sensor_file(test::project_file("models/sensors/" + name + ".textproto"));
     EXPECT_EQ(sensor.name, name);
   }
@@ -77,6 +77,16 @@ TEST(SensorFile, scanner_has_what_the_paper_leaves_out) {
   EXPECT_TRUE(sensor.background);
   EXPECT_GT(sensor.depth_noise, 0.0);
   EXPECT_DOUBLE_EQ(sensor.working_distance(), 900.0);
+}
+
+TEST(SensorFile, depth_camera_stands_above_a_pallet) {
+  const SensorModel sensor = read_sensor_file(test::project_file("models/sensors/depth_camera.textproto"));
+  EXPECT_TRUE(sensor.projector);
+  EXPECT_TRUE(sensor.background);
+  // A carton of a quarter of a metre has room, and its edges can be found to a few millimetres.
+  EXPECT_GT(sensor.field_of_view(), 4.0 * 250.0);
+  EXPECT_LT(sensor.cell_size(), 3.0);
+  EXPECT_GT(sensor.depth_sigma(), sensor.depth_noise);
 }
 
 TEST(SensorFile, says_line_and_column_of_text_that_does_not_parse) {
