@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
-#include <set>
 
 namespace foresight {
 namespace {
 
 // Sets of patches that have become one plane: a union-find forest in which the larger absorbs the smaller.
 struct Clusters {
-  std::vector<PointSums> sums;   // by patch; of the whole cluster at its representative
+  std::vector<PointSums>& sums;  // by patch; of the whole cluster at its representative
   std::vector<int> parent;       // by patch
 
-  void add(const PointSums& patch) {
-    parent.push_back(static_cast<int>(sums.size()));
-    sums.push_back(patch);
+  explicit Clusters(std::vector<PointSums>& patches) : sums(patches), parent(patches.size()) {
+    for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = static_cast<int>(i);
   }
+  [[nodiscard]] PointSums& of(int representative) { return sums[static_cast<std::size_t>(representative)]; }
   int representative(int patch) {
     while (parent[static_cast<std::size_t>(patch)] != patch) {
       int& up = parent[static_cast<std::size_t>(patch)];
@@ -27,248 +26,110 @@ struct Clusters {
   }
 };
 
-// Square patches on a grid over the image.
-struct PatchGrid {
-  int rows = 0;
-  int columns = 0;
-  int block = 0;
-  std::vector<int> index;        // by position: patch, or -1
-  std::vector<int> origin;       // by patch: its first cell
-  Clusters clusters;
-
-  [[nodiscard]] int at(int row, int column) const { return index[static_cast<std::size_t>(row * columns + column)]; }
-};
-
-// Nearly all cells free and valid, flat within the tolerance. A tenth may be missing: scanners drop single cells and columns.
-bool collect_patch(const RangeImage& image, const std::vector<int>& labels, int first_cell, int block, double largest_mse,
-                   PointSums& sums) {
-  for (int r = 0; r < block; ++r) {
-    for (int c = 0; c < block; ++c) {
-      const int cell = first_cell + r * image.columns + c;
-      if (labels[static_cast<std::size_t>(cell)] != 0) return false;
-      if (image.valid(cell)) sums.add(image[cell].cast<double>());
-    }
-  }
-  constexpr double kSmallestShare = 0.7;
-  if (sums.count() < std::max(3.0, kSmallestShare * block * block)) return false;
-  return sums.mean_squared_distance(sums.fit()) <= largest_mse;
-}
-
-PatchGrid make_patches(const RangeImage& image, const std::vector<int>& labels, int block, double largest_mse) {
-  PatchGrid patches;
-  patches.block = block;
-  patches.rows = image.rows / block;
-  patches.columns = image.columns / block;
-  patches.index.assign(static_cast<std::size_t>(patches.rows * patches.columns), -1);
-  for (int row = 0; row < patches.rows; ++row) {
-    for (int column = 0; column < patches.columns; ++column) {
-      PointSums sums;
-      const int first_cell = image.cell(row * block, column * block);
-      if (!collect_patch(image, labels, first_cell, block, largest_mse, sums)) continue;
-      patches.index[static_cast<std::size_t>(row * patches.columns + column)] = static_cast<int>(patches.origin.size());
-      patches.origin.push_back(first_cell);
-      patches.clusters.add(sums);
-    }
-  }
-  return patches;
-}
-
 // The worse of the two parts' mean squared distances from their common plane: a small patch cannot hide in a large one.
 double common_error(const PointSums& a, const PointSums& b) {
   PointSums both = a;
   both.add(b);
   const Plane plane = both.fit();
-  return std::max(a.mean_squared_distance(plane), b.mean_squared_distance(plane));
+  return std::max(fit_error(a, plane), fit_error(b, plane));
 }
 
 struct Pair {
   double error;
-  int a, b;       // patches that touch
-  double stamp;   // cells of both clusters when the error was computed; a different number now means it is out of date
+  int a, b;      // patches that touch
+  double stamp;  // cells of both clusters when the error was computed; a different number now means it is out of date
 
   bool operator>(const Pair& other) const {
     if (error != other.error) return error > other.error;
     return a != other.a ? a > other.a : b > other.b;
   }
 };
-using PairQueue = std::priority_queue<Pair, std::vector<Pair>, std::greater<>>;
 
 Pair make_pair_of(Clusters& clusters, int a, int b) {
-  const PointSums& in_a = clusters.sums[static_cast<std::size_t>(clusters.representative(a))];
-  const PointSums& in_b = clusters.sums[static_cast<std::size_t>(clusters.representative(b))];
+  const PointSums& in_a = clusters.of(clusters.representative(a));
+  const PointSums& in_b = clusters.of(clusters.representative(b));
   return {common_error(in_a, in_b), a, b, in_a.count() + in_b.count()};
 }
 
-// Touching patches whose facing cells hold together, at least half of them.
-bool touch(const CellConnectivity& connectivity, int first_cell, int step, int block, bool rightwards) {
-  int together = 0;
-  for (int i = 0; i < block; ++i) {
-    const int cell = first_cell + i * step;
-    together += (rightwards ? connectivity.right(cell) : connectivity.down(cell)) >= 0 ? 1 : 0;
-  }
-  return 2 * together >= block;
+}  // namespace
+
+double relative_noise(const Plane& plane) {
+  constexpr double kSideways = 0.4;
+  return std::max(kSideways, std::abs(plane.normal.z()));
 }
 
-PairQueue neighbouring_pairs(const RangeImage& image, const CellConnectivity& connectivity, PatchGrid& patches) {
-  PairQueue queue;
-  const int block = patches.block;
-  for (int row = 0; row < patches.rows; ++row) {
-    for (int column = 0; column < patches.columns; ++column) {
-      const int patch = patches.at(row, column);
-      if (patch < 0) continue;
-      const int origin = patches.origin[static_cast<std::size_t>(patch)];
-      const int right = column + 1 < patches.columns ? patches.at(row, column + 1) : -1;
-      if (right >= 0 && touch(connectivity, origin + block - 1, image.columns, block, true)) {
-        queue.push(make_pair_of(patches.clusters, patch, right));
-      }
-      const int below = row + 1 < patches.rows ? patches.at(row + 1, column) : -1;
-      if (below >= 0 && touch(connectivity, origin + (block - 1) * image.columns, 1, block, false)) {
-        queue.push(make_pair_of(patches.clusters, patch, below));
-      }
-    }
-  }
-  return queue;
+double fit_error(const PointSums& sums, const Plane& plane) {
+  const double noise = relative_noise(plane);
+  return sums.mean_squared_distance(plane) / (noise * noise);
 }
 
-// Pairs whose clusters have grown since their error was computed are brought up to date when they come up, not before:
-// a cluster has as many pairs as its outline has patches, and most never come up again.
-void merge_best_first(Clusters& clusters, PairQueue queue, double largest_mse) {
+bool is_steady(const PointSums& sums, const Plane& plane, const SegmentationOptions& options) {
+  const double noise = options.plane_sigma * relative_noise(plane) / kNormalAccuracy;
+  return sums.count() * sums.narrow_spread() >= noise * noise;
+}
+
+std::vector<int> merge_best_first(std::vector<PointSums>& patches, const std::vector<std::pair<int, int>>& touching,
+                                  double largest_rms) {
+  Clusters clusters(patches);
+  std::vector<Pair> pairs;
+  pairs.reserve(touching.size());
+  for (const auto& [a, b] : touching) pairs.push_back(make_pair_of(clusters, a, b));
+  std::priority_queue<Pair, std::vector<Pair>, std::greater<>> queue(std::greater<>(), std::move(pairs));
+  // Pairs whose clusters have grown since their error was computed are brought up to date when they come up, not
+  // before: a cluster has as many pairs as its outline has patches, and most never come up again.
   while (!queue.empty()) {
     const Pair top = queue.top();
     queue.pop();
     const int a = clusters.representative(top.a);
     const int b = clusters.representative(top.b);
     if (a == b) continue;
-    PointSums& in_a = clusters.sums[static_cast<std::size_t>(a)];
-    PointSums& in_b = clusters.sums[static_cast<std::size_t>(b)];
+    PointSums& in_a = clusters.of(a);
+    PointSums& in_b = clusters.of(b);
     if (in_a.count() + in_b.count() != top.stamp) {
       queue.push(make_pair_of(clusters, top.a, top.b));
       continue;
     }
-    if (top.error > largest_mse) continue;
+    if (top.error > largest_rms * largest_rms) continue;
     const bool a_absorbs = in_a.count() != in_b.count() ? in_a.count() > in_b.count() : a < b;
     (a_absorbs ? in_a : in_b).add(a_absorbs ? in_b : in_a);
     clusters.parent[static_cast<std::size_t>(a_absorbs ? b : a)] = a_absorbs ? a : b;
   }
+  for (int patch = 0; patch < static_cast<int>(patches.size()); ++patch) {
+    clusters.parent[static_cast<std::size_t>(patch)] = clusters.representative(patch);
+  }
+  return clusters.parent;
 }
 
-double largest_mse_of(const SegmentationOptions& options) {
-  const double tolerance = options.merge_tolerance * options.plane_sigma;
-  return tolerance * tolerance;
-}
-
-}  // namespace
-
-namespace {
-
-// Decides whether neighbouring cells hold together.
-class StepJudge {
- public:
-  StepJudge(const RangeImage& image, const SegmentationOptions& options) : image_(image), options_(options) {}
-
-  // Cells to the next valid one along a row or column within `room`, 0 when there is none or a depth step lies between.
-  // behind: how many cells lie before this one on its row or column.
-  [[nodiscard]] unsigned gap_to_next(int cell, int stride, int room, int behind) const {
-    for (int gap = 1; gap <= std::min(2, room); ++gap) {
-      const int next = cell + gap * stride;
-      if (!image_.valid(next)) continue;
-      const bool before = behind >= gap && continues(cell - gap * stride, cell, next);
-      const bool after = room >= 2 * gap && continues(cell, next, next + gap * stride);
-      return together(cell, next, before || after) ? static_cast<unsigned>(gap) : 0U;
-    }
-    return 0U;
-  }
-
- private:
-  // Small steps always hold together; steps as large as a surface seen at a grazing angle makes them, only where the slope goes on.
-  [[nodiscard]] bool together(int a, int b, bool slope_goes_on) const {
-    constexpr double kGrazingStep = 20.0;  // tan 87 degrees
-    const Eigen::Vector3f step = image_[b] - image_[a];
-    const double lateral = std::hypot(step.x(), step.y());
-    const double depth = std::abs(step.z());
-    if (depth <= options_.largest_depth_step * lateral + 4.0 * options_.plane_sigma) return true;
-    return slope_goes_on && depth <= kGrazingStep * lateral;
-  }
-
-  // Three cells in a row whose two steps in depth agree.
-  [[nodiscard]] bool continues(int a, int b, int c) const {
-    if (!image_.valid(a) || !image_.valid(b) || !image_.valid(c)) return false;
-    const double first = image_[b].z() - image_[a].z();
-    const double second = image_[c].z() - image_[b].z();
-    return std::abs(second - first) <= 4.0 * options_.plane_sigma + 0.15 * std::min(std::abs(first), std::abs(second));
-  }
-
-  const RangeImage& image_;
-  const SegmentationOptions& options_;
-};
-
-}  // namespace
-
-CellConnectivity::CellConnectivity(const RangeImage& image, const SegmentationOptions& options)
-    : columns_(image.columns), bits_(static_cast<std::size_t>(image.size()), 0) {
-  const StepJudge judge(image, options);
-  for (int row = 0; row < image.rows; ++row) {
-    for (int column = 0; column < image.columns; ++column) {
-      const int cell = image.cell(row, column);
-      if (!image.valid(cell)) continue;
-      const unsigned across = judge.gap_to_next(cell, 1, image.columns - 1 - column, column);
-      const unsigned below = judge.gap_to_next(cell, image.columns, image.rows - 1 - row, row);
-      bits_[static_cast<std::size_t>(cell)] = static_cast<unsigned char>(across | (below << 2));
-    }
-  }
-}
-
-std::vector<std::vector<int>> merge_patches(const RangeImage& image, const CellConnectivity& connectivity,
-                                            const std::vector<int>& labels, int block, int fewest_cells,
-                                            const SegmentationOptions& options) {
-  const double largest_mse = largest_mse_of(options);
-  PatchGrid patches = make_patches(image, labels, block, largest_mse);
-  Clusters& clusters = patches.clusters;
-  merge_best_first(clusters, neighbouring_pairs(image, connectivity, patches), largest_mse);
-
-  std::vector<std::vector<int>> planes;
-  std::vector<int> plane_of(clusters.sums.size(), -1);
-  for (int patch = 0; patch < static_cast<int>(clusters.sums.size()); ++patch) {
-    const auto top = static_cast<std::size_t>(clusters.representative(patch));
-    if (clusters.sums[top].count() < fewest_cells) continue;
-    if (plane_of[top] < 0) {
-      plane_of[top] = static_cast<int>(planes.size());
-      planes.emplace_back();
-    }
-    std::vector<int>& cells = planes[static_cast<std::size_t>(plane_of[top])];
-    const int origin = patches.origin[static_cast<std::size_t>(patch)];
-    for (int r = 0; r < block; ++r) {
-      for (int c = 0; c < block; ++c) {
-        const int cell = origin + r * image.columns + c;
-        if (image.valid(cell)) cells.push_back(cell);
-      }
-    }
-  }
-  return planes;
-}
-
-void merge_regions(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                   std::vector<int>& labels) {
-  const int count = *std::max_element(labels.begin(), labels.end());
-  std::vector<PointSums> sums(static_cast<std::size_t>(count));
-  std::set<std::pair<int, int>> touching;
-  for (int cell = 0; cell < image.size(); ++cell) {
-    const int own = labels[static_cast<std::size_t>(cell)];
+void merge_touching_planes(const CellConnectivity& connectivity, const SegmentationOptions& options,
+                           PlaneLabels& found) {
+  std::vector<std::pair<int, int>> touching;
+  for (int cell = 0; cell < static_cast<int>(found.labels.size()); ++cell) {
+    const int own = found.labels[static_cast<std::size_t>(cell)];
     if (own == 0) continue;
-    sums[static_cast<std::size_t>(own - 1)].add(image[cell].cast<double>());
     for (const int next : {connectivity.right(cell), connectivity.down(cell)}) {
-      const int other = next < 0 ? 0 : labels[static_cast<std::size_t>(next)];
-      if (other != 0 && other != own) touching.insert(std::minmax(own - 1, other - 1));
+      const int other = next < 0 ? 0 : found.labels[static_cast<std::size_t>(next)];
+      if (other == 0 || other == own) continue;
+      const std::pair<int, int> pair = std::minmax(own - 1, other - 1);
+      if (touching.empty() || touching.back() != pair) touching.push_back(pair);
     }
   }
-  Clusters clusters;
-  for (const PointSums& region : sums) clusters.add(region);
-  PairQueue queue;
-  for (const auto& [a, b] : touching) queue.push(make_pair_of(clusters, a, b));
-  merge_best_first(clusters, std::move(queue), largest_mse_of(options));
-  for (int& label : labels) {
-    if (label != 0) label = clusters.representative(label - 1) + 1;
+  std::sort(touching.begin(), touching.end());
+  touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+  const std::vector<int> merged = merge_best_first(found.sums, touching, options.merge_tolerance * options.plane_sigma);
+
+  std::vector<int> label_of(merged.size(), 0);
+  std::vector<PointSums> sums;
+  for (std::size_t i = 0; i < merged.size(); ++i) {
+    if (merged[i] != static_cast<int>(i)) continue;
+    sums.push_back(found.sums[i]);
+    label_of[i] = static_cast<int>(sums.size());
   }
+  for (int& label : found.labels) {
+    if (label != 0) label = label_of[static_cast<std::size_t>(merged[static_cast<std::size_t>(label - 1)])];
+  }
+  found.planes.clear();
+  for (const PointSums& plane : sums) found.planes.push_back(plane.fit());
+  found.sums = std::move(sums);
 }
 
 }  // namespace foresight

@@ -1,57 +1,51 @@
-// Best-first merging of square patches of the image into planes: the first half of region growing.
+// Best-first merging of patches of the image into planes: the neighbouring pair of least common fit error merges first.
 //
 // After Feng, Taguchi, Kamat, "Fast plane extraction in organized point clouds using agglomerative hierarchical
-// clustering", ICRA 2014, with pairs instead of patches in the queue: the neighbouring pair of least common fit error merges first.
+// clustering", ICRA 2014, with pairs instead of patches in the queue.
 #pragma once
 
+#include <utility>
 #include <vector>
 
+#include "common/cell_connectivity.h"
 #include "common/plane_fit.h"
-#include "common/range_image.h"
-#include "common/segmentation.h"
 
 namespace foresight {
 
-// Which cells hold together: neighbours in a row or a column, both valid, no depth step between. A single cell without
-// data in between is bridged, because scanners drop single cells and whole columns of a surface.
-class CellConnectivity {
- public:
-  CellConnectivity(const RangeImage& image, const SegmentationOptions& options);
+// Planes and which cells are theirs.
+struct PlaneLabels {
+  std::vector<int> labels;  // by cell: 0 = free, i + 1 = planes[i]
+  std::vector<Plane> planes;
+  std::vector<PointSums> sums;  // by plane: of its cells
 
-  // The connected cell to the right of or below a cell, or -1.
-  [[nodiscard]] int right(int cell) const { return step(cell, 0, 1); }
-  [[nodiscard]] int down(int cell) const { return step(cell, 2, columns_); }
-
-  // Calls visit(neighbour) for each of the up to four connected neighbours.
-  template <typename Visit>
-  void for_each_neighbour(int cell, Visit&& visit) const {
-    if (const int next = right(cell); next >= 0) visit(next);
-    if (const int next = down(cell); next >= 0) visit(next);
-    for (int gap = 1; gap <= 2; ++gap) {
-      if (cell % columns_ >= gap && right(cell - gap) == cell) visit(cell - gap);
-      if (cell >= gap * columns_ && down(cell - gap * columns_) == cell) visit(cell - gap * columns_);
-    }
-  }
-
- private:
-  [[nodiscard]] int step(int cell, int shift, int stride) const {
-    const int gap = (bits_[static_cast<std::size_t>(cell)] >> shift) & 3;
-    return gap == 0 ? -1 : cell + gap * stride;
-  }
-
-  int columns_;
-  std::vector<unsigned char> bits_;  // bits 0-1: cells to the right neighbour, 0 = none; bits 2-3: the same downwards
+  explicit PlaneLabels(int cells) : labels(static_cast<std::size_t>(cells), 0) {}
 };
 
-// Merges patches of block x block cells among the cells of label 0, until no pair fits one plane within the merge
-// tolerance. Returns the cells of each merged plane of at least `fewest_cells`, in deterministic order.
-[[nodiscard]] std::vector<std::vector<int>> merge_patches(const RangeImage& image, const CellConnectivity& connectivity,
-                                                          const std::vector<int>& labels, int block, int fewest_cells,
-                                                          const SegmentationOptions& options);
+// Standard deviation of the data points about a plane, in units of plane_sigma. Sensors err along their line of sight,
+// so points lie nearer to a plane seen at a slant; not without limit, because they err a little sideways too.
+[[nodiscard]] double relative_noise(const Plane& plane);
 
-// Merges touching regions of a label image (0 = none) that fit one plane within the merge tolerance: pieces of one face that
-// grew from apart. Every label that occurs must stand for at least three cells.
-void merge_regions(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                   std::vector<int>& labels);
+// Root mean square distance from the plane in standard deviations of the data points about it, squared; plane_sigma
+// = 1.
+[[nodiscard]] double fit_error(const PointSums& sums, const Plane& plane);
+
+// How well normals of seeds and of regions must be known at least. Unit: rad.
+inline constexpr double kNormalAccuracy = 0.1;
+
+// Whether data points say which way their plane faces: a row of cells lies on many planes. The normal of n points of
+// noise sigma that spread by s across their narrow side is known to about sigma / (s sqrt(n)) radians.
+[[nodiscard]] bool is_steady(const PointSums& sums, const Plane& plane, const SegmentationOptions& options);
+
+// Patches that have become one plane, by patch: the index of one of them, the same for all. `patches` holds the sums of
+// the whole at that index afterwards.
+// touching: pairs that may merge. largest_rms: no part of a merged pair is farther than this (rms) from the common
+// plane, where that faces the sensor.
+[[nodiscard]] std::vector<int> merge_best_first(std::vector<PointSums>& patches,
+                                                const std::vector<std::pair<int, int>>& touching, double largest_rms);
+
+// Merges touching planes that fit one plane within the merge tolerance: pieces of one face that grew from apart.
+// Every plane must have at least three cells.
+void merge_touching_planes(const CellConnectivity& connectivity, const SegmentationOptions& options,
+                           PlaneLabels& found);
 
 }  // namespace foresight

@@ -1,26 +1,17 @@
 #include "common/plane_fit.h"
 
-#include <algorithm>
-
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace foresight {
 
-void PointSums::add(const Eigen::Vector3d& point) {
-  count_ += 1.0;
-  sum_ += point;
-  outer_.noalias() += point * point.transpose();
-}
-
-void PointSums::add(const PointSums& other) {
-  count_ += other.count_;
-  sum_ += other.sum_;
-  outer_ += other.outer_;
-}
-
 Eigen::Matrix3d PointSums::covariance() const {
   const Eigen::Vector3d centre = mean();
-  return outer_ / count_ - centre * centre.transpose();
+  Eigen::Matrix3d outer;
+  outer << squares_.x(), products_.x(), products_.y(),  //
+      products_.x(), squares_.y(), products_.z(),       //
+      products_.y(), products_.z(), squares_.z();
+  return outer / count_ - centre * centre.transpose();
 }
 
 Plane PointSums::fit() const {
@@ -34,6 +25,12 @@ Plane PointSums::fit() const {
     plane.offset = -plane.offset;
   }
   return plane;
+}
+
+double PointSums::narrow_spread() const {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance(), Eigen::EigenvaluesOnly);
+  return std::max(0.0, solver.eigenvalues()[1]);
 }
 
 double PointSums::mean_squared_distance(const Plane& plane) const {

@@ -1,9 +1,9 @@
 #include "common/plane_fit.h"
 
-#include <cmath>
+#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <gtest/gtest.h>
+#include <cmath>
 
 #include "common/random.h"
 
@@ -15,7 +15,8 @@ PointSums sums_on_plane(const Eigen::Vector3d& normal, double offset, double noi
   const Eigen::Vector3d v = normal.cross(u);
   PointSums sums;
   for (int i = 0; i < count; ++i) {
-    sums.add(offset * normal + random.uniform(-30, 30) * u + random.uniform(-30, 30) * v + noise * random.gaussian() * normal);
+    sums.add(offset * normal + random.uniform(-30, 30) * u + random.uniform(-30, 30) * v +
+             noise * random.gaussian() * normal);
   }
   return sums;
 }
@@ -60,6 +61,23 @@ TEST(PlaneFit, sums_of_two_parts_are_the_sums_of_the_whole) {
   a.add(b);
   EXPECT_EQ(a.count(), before + b.count());
   EXPECT_NEAR(a.fit().offset, -600, 0.5);
+}
+
+TEST(PlaneFit, removed_points_are_as_if_never_added) {
+  PointSums sums = sums_on_plane(Eigen::Vector3d::UnitX(), -600, 1.0, Random(8));
+  const double before = sums.mean_squared_distance(sums.fit());
+  sums.add({-300, 20, 30});
+  EXPECT_GT(sums.mean_squared_distance(sums.fit()), 2.0 * before);
+  sums.remove({-300, 20, 30});
+  EXPECT_NEAR(sums.mean_squared_distance(sums.fit()), before, 1e-6);
+}
+
+TEST(PlaneFit, narrow_spread_is_that_of_the_narrow_side) {
+  PointSums sums;
+  for (int i = 0; i < 100; ++i) {
+    for (const double y : {-1.0, 1.0}) sums.add({static_cast<double>(i), y, -500.0});
+  }
+  EXPECT_NEAR(sums.narrow_spread(), 1.0, 1e-6);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 #include "common/segmentation.h"
 
-#include <cmath>
-#include <set>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
 
 #include "common/errors.h"
 #include "tests/images.h"
@@ -24,7 +26,8 @@ SensorModel noisy_sensor() {
   return sensor;
 }
 
-std::vector<Rectangle> box_at(const Eigen::Vector3d& size, const Eigen::Matrix3d& rotation, const Eigen::Vector3d& position) {
+std::vector<Rectangle> box_at(const Eigen::Vector3d& size, const Eigen::Matrix3d& rotation,
+                              const Eigen::Vector3d& position) {
   std::vector<Rectangle> sides;
   for (const Rectangle& side : box_sides(size)) sides.push_back(moved(side, Pose{rotation, position}));
   return sides;
@@ -56,7 +59,8 @@ TEST_P(SegmentationOfABox, finds_its_three_visible_sides_and_nothing_else) {
   for (const Region& region : regions) {
     covered += region.cells.size();
     double best = 0;
-    for (const Rectangle& side : sides) best = std::max(best, std::abs(side.a.cross(side.b).normalized().dot(region.normal)));
+    for (const Rectangle& side : sides)
+      best = std::max(best, std::abs(side.a.cross(side.b).normalized().dot(region.normal)));
     EXPECT_GT(best, std::cos(0.02));
   }
   EXPECT_GT(static_cast<double>(covered), 0.97 * count_valid(image));
@@ -65,7 +69,8 @@ INSTANTIATE_TEST_SUITE_P(Noise, SegmentationOfABox, ::testing::Values(0.0, 0.2, 
 
 TEST(Segmentation, regions_are_disjoint_and_ordered_by_size) {
   const SensorModel sensor = noisy_sensor();
-  const auto regions = segment(render(box_at({100, 70, 50}, corner_view(), {0, 0, 900}), sensor.camera, 0.5), segmentation_options_for(sensor));
+  const auto regions = segment(render(box_at({100, 70, 50}, corner_view(), {0, 0, 900}), sensor.camera, 0.5),
+                               segmentation_options_for(sensor));
   std::set<int> seen;
   std::size_t total = 0;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -81,10 +86,12 @@ TEST(Segmentation, regions_are_disjoint_and_ordered_by_size) {
 
 TEST(Segmentation, normals_face_the_sensor_and_offsets_are_negative) {
   const SensorModel sensor = noisy_sensor();
-  for (const Region& region : segment(render(box_at({90, 60, 60}, corner_view(), {0, 0, 880}), sensor.camera, 0.5), segmentation_options_for(sensor))) {
+  for (const Region& region : segment(render(box_at({90, 60, 60}, corner_view(), {0, 0, 880}), sensor.camera, 0.5),
+                                      segmentation_options_for(sensor))) {
     EXPECT_NEAR(region.normal.norm(), 1.0, 1e-9);
     EXPECT_LT(region.offset, 0.0);
-    EXPECT_LE(region.rms, segmentation_options_for(sensor).merge_tolerance * segmentation_options_for(sensor).plane_sigma * 2);
+    EXPECT_LE(region.rms,
+              segmentation_options_for(sensor).merge_tolerance * segmentation_options_for(sensor).plane_sigma * 2);
   }
 }
 
@@ -108,6 +115,136 @@ TEST(Segmentation, an_occluder_splits_a_plane_into_two_regions) {
   const SensorModel sensor = quiet_sensor();
   const RangeImage image = render({facing({0, 0, 900}, 160, 60), facing({0, 0, 800}, 20, 120)}, sensor.camera);
   EXPECT_EQ(segment(image, segmentation_options_for(sensor)).size(), 3U);
+}
+
+TEST(Segmentation, parts_of_a_face_behind_a_bar_lie_on_one_plane) {
+  for (const SensorModel& sensor : {quiet_sensor(), noisy_sensor()}) {
+    const RangeImage image =
+        render({facing({0, 0, 900}, 160, 60), facing({0, 0, 800}, 20, 120)}, sensor.camera, sensor.depth_noise);
+    const auto regions = segment(image, segmentation_options_for(sensor));
+    ASSERT_EQ(regions.size(), 3U);
+    int behind = 0;
+    for (const Region& region : regions) {
+      if (std::abs(region.offset + 900.0) > 20.0) continue;
+      ++behind;
+      EXPECT_NEAR(region.offset, -900.0, 1.0);
+      EXPECT_GT(-region.normal.z(), std::cos(0.01));
+    }
+    EXPECT_EQ(behind, 2);
+  }
+}
+
+class SegmentationOfAPlane : public ::testing::TestWithParam<double> {};
+
+TEST_P(SegmentationOfAPlane, finds_it_whole) {
+  SensorModel sensor;
+  sensor.depth_noise = GetParam();
+  const Rectangle slanted =
+      moved(facing({0, 0, 0}, 150, 110), Pose{rotation_from_vector({0.3, -0.5, 0.2}), {5, 0, 900}});
+  const RangeImage image = render({slanted}, sensor.camera, sensor.depth_noise);
+  const auto regions = segment(image, segmentation_options_for(sensor));
+  ASSERT_EQ(regions.size(), 1U);
+  EXPECT_GT(static_cast<double>(regions[0].cells.size()), 0.99 * count_valid(image));
+  EXPECT_GT(std::abs(slanted.a.cross(slanted.b).normalized().dot(regions[0].normal)), std::cos(0.002));
+}
+INSTANTIATE_TEST_SUITE_P(Noise, SegmentationOfAPlane, ::testing::Values(0.0, 0.2, 0.5, 1.0, 2.0));
+
+TEST(Segmentation, a_face_two_cells_wide_is_found) {
+  const SensorModel sensor = quiet_sensor();
+  const double cell = sensor.cell_size();
+  for (const double shift : {0.0, 0.3, 0.6}) {  // of the grid against the face, in cells
+    const double left = shift * cell;
+    // The top of a rib that stands out of a wall.
+    const std::vector<Rectangle> rib = {facing({0, 0, 900}, 120, 80), facing({left, 0, 890}, 2.2 * cell, 80)};
+    const auto regions = segment(render(rib, sensor.camera), segmentation_options_for(sensor));
+    ASSERT_EQ(regions.size(), 3U) << "shift " << shift;
+    EXPECT_GT(-regions[2].normal.z(), std::cos(0.02));
+    EXPECT_GE(regions[2].cells.size(), 100U);
+  }
+}
+
+// Two planes that meet at the image's middle column, each turned away by an angle; a convex edge for a positive one.
+std::vector<Rectangle> dihedral(double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {{{0, -60, 900}, {70 * c, 0, 70 * s}, {0, 120, 0}}, {{0, -60, 900}, {-70 * c, 0, 70 * s}, {0, 120, 0}}};
+}
+
+class SegmentationOfADihedral : public ::testing::TestWithParam<std::tuple<double, double>> {};
+
+TEST_P(SegmentationOfADihedral, borders_lie_within_a_cell_of_the_crease) {
+  const auto [angle, noise] = GetParam();
+  SensorModel sensor;
+  sensor.depth_noise = noise;
+  const RangeImage image = render(dihedral(angle), sensor.camera, noise);
+  const auto regions = segment(image, segmentation_options_for(sensor));
+  ASSERT_EQ(regions.size(), 2U);
+  const double crease = sensor.camera.cx;
+  for (const Region& region : regions) {
+    const bool left = region.cells.front() % image.columns < crease;
+    for (const int cell : region.cells) {
+      const double beyond = left ? cell % image.columns - crease : crease - cell % image.columns;
+      EXPECT_LE(beyond, 1.0) << "row " << cell / image.columns;
+    }
+    EXPECT_GT(static_cast<double>(region.cells.size()), 0.48 * count_valid(image));
+  }
+}
+INSTANTIATE_TEST_SUITE_P(AngleAndNoise, SegmentationOfADihedral,
+                         ::testing::Combine(::testing::Values(0.3, 0.6, -0.3, -0.6), ::testing::Values(0.0, 0.2, 0.5)));
+
+TEST(Segmentation, a_face_does_not_run_on_where_its_plane_crosses_another) {
+  // A wall on a floor: the wall's plane crosses the floor beyond the wall's ends too.
+  SensorModel sensor = noisy_sensor();
+  const double tilt = 0.7;
+  const Eigen::Vector3d down_the_floor(0, std::cos(tilt), -std::sin(tilt));
+  const Eigen::Vector3d up_the_wall(0, -std::sin(tilt), -std::cos(tilt));
+  const Eigen::Vector3d origin(0, 0, 900);
+  const std::vector<Rectangle> scene = {
+      {origin - 120 * down_the_floor - Eigen::Vector3d(120, 0, 0), {240, 0, 0}, 240 * down_the_floor},
+      {origin - Eigen::Vector3d(30, 0, 0), {60, 0, 0}, 50 * up_the_wall}};
+  const RangeImage image = render(scene, sensor.camera, sensor.depth_noise);
+  const auto regions = segment(image, segmentation_options_for(sensor));
+  ASSERT_EQ(regions.size(), 2U);
+  for (const int cell : regions[1].cells) EXPECT_LT(std::abs(image[cell].x()), 30.0 + 1.5 * sensor.cell_size());
+}
+
+TEST(Segmentation, every_cell_lies_within_tolerance_of_its_plane) {
+  const SensorModel sensor = noisy_sensor();
+  const SegmentationOptions options = segmentation_options_for(sensor);
+  RangeImage image = render(box_at({100, 70, 50}, corner_view(), {0, 0, 900}), sensor.camera, 0.5);
+  Random random(11);
+  for (int cell = 0; cell < image.size(); ++cell) {
+    if (random.uniform() < 0.01) image[cell] *= 1.0F + 0.02F * static_cast<float>(random.gaussian());
+  }
+  const auto regions = segment(image, options);
+  EXPECT_EQ(regions.size(), 3U);
+  for (const Region& region : regions) {
+    for (const int cell : region.cells) {
+      EXPECT_LE(std::abs(region.normal.dot(image[cell].cast<double>()) - region.offset),
+                options.grow_tolerance * options.plane_sigma);
+    }
+  }
+}
+
+TEST(Segmentation, nothing_is_found_in_pure_noise) {
+  for (const SensorModel& sensor : {quiet_sensor(), noisy_sensor()}) {
+    RangeImage image(240, 256);
+    Random random(5);
+    for (int cell = 0; cell < image.size(); ++cell) {
+      const Eigen::Vector3d ray = sensor.camera.ray(cell / 256, cell % 256);
+      image[cell] = (random.uniform(800, 1000) * ray).cast<float>();
+    }
+    EXPECT_TRUE(segment(image, segmentation_options_for(sensor)).empty());
+  }
+}
+
+TEST(Segmentation, a_single_row_of_cells_is_no_region) {
+  const SensorModel sensor = quiet_sensor();
+  RangeImage image = render({facing({0, 0, 900}, 150, 150)}, sensor.camera);
+  for (int cell = 0; cell < image.size(); ++cell) {
+    if (cell / image.columns != 100) image[cell].setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  EXPECT_TRUE(segment(image, segmentation_options_for(sensor)).empty());
 }
 
 TEST(Segmentation, holes_in_the_data_do_no_harm) {

@@ -65,8 +65,8 @@ TEST(AcceptanceTraining, gives_what_the_runtime_can_use) {
   const AcceptanceModel& model = compiled_stick().acceptance;
   for (const double weight : model.weights) EXPECT_TRUE(std::isfinite(weight));
   EXPECT_TRUE(std::isfinite(model.bias));
-  EXPECT_GE(model.least_overlap, 0.0);
-  EXPECT_LE(model.least_overlap, 1.0);
+  EXPECT_GE(model.least_quality, 0.0);
+  EXPECT_LE(model.least_quality, 1.0);
   EXPECT_GT(model.samples, 9);
   EXPECT_GT(model.weights[kOwnedShare], 0.0);
   EXPECT_LT(model.weights[kContradictedShare], 0.0);
@@ -78,7 +78,7 @@ TEST(AcceptanceTraining, gives_the_same_bits_for_any_number_of_threads) {
   const AcceptanceModel second = trained(few().acceptance);
   EXPECT_EQ(first.weights, second.weights);
   EXPECT_EQ(first.bias, second.bias);
-  EXPECT_EQ(first.least_overlap, second.least_overlap);
+  EXPECT_EQ(first.least_quality, second.least_quality);
   EXPECT_EQ(first.samples, second.samples);
 }
 

@@ -59,7 +59,7 @@ void expect_same(const CompiledModel& a, const CompiledModel& b) {
   expect_same(a.surface, b.surface);
   EXPECT_EQ(a.acceptance.weights, b.acceptance.weights);
   EXPECT_EQ(a.acceptance.bias, b.acceptance.bias);
-  EXPECT_EQ(a.acceptance.least_overlap, b.acceptance.least_overlap);
+  EXPECT_EQ(a.acceptance.least_quality, b.acceptance.least_quality);
   EXPECT_EQ(a.acceptance.samples, b.acceptance.samples);
   ASSERT_EQ(a.symmetries.size(), b.symmetries.size());
   for (std::size_t i = 0; i < a.symmetries.size(); ++i) {

@@ -277,10 +277,10 @@ TEST(DecodeDatabase, refuses_bad_acceptance_models) {
       expect_bad("a weight of the acceptance model", [&](AcceptanceModel& a) { a.weights[k] = value; });
     }
     expect_bad("a weight of the acceptance model", [&](AcceptanceModel& a) { a.bias = value; });
-    expect_bad("the least overlap", [&](AcceptanceModel& a) { a.least_overlap = value; });
+    expect_bad("what the acceptance model asks of a start", [&](AcceptanceModel& a) { a.least_quality = value; });
   }
-  expect_bad("the least overlap", [](AcceptanceModel& a) { a.least_overlap = -0.01; });
-  expect_bad("the least overlap", [](AcceptanceModel& a) { a.least_overlap = 1.01; });
+  expect_bad("what the acceptance model asks of a start", [](AcceptanceModel& a) { a.least_quality = -0.01; });
+  expect_bad("what the acceptance model asks of a start", [](AcceptanceModel& a) { a.least_quality = 1.01; });
   const std::string bytes =
       with_messages([](v1::Header&, v1::Model& m) { m.mutable_acceptance()->set_samples(0xFFFFFFFF); });
   EXPECT_EQ(error_of(bytes).fault(), DatabaseFault::inconsistent);
