@@ -19,12 +19,16 @@
 namespace foresight {
 namespace {
 
-constexpr double kStretch = 1.2;       // of the impostors
-constexpr double kSameDistance = 5.0;  // of cells that show the same. Unit: mm.
-constexpr double kRightShare = 0.9;    // of the cells of poses that show the same: right
-constexpr double kWrongShare = 0.8;    // fewer show the same: wrong; between them nothing is learnt
-constexpr double kNearShare = 0.5;     // of a start that is worth refining here: show the same
-constexpr double kLeastVisible = 0.3;  // an object hidden by more teaches nothing about right poses
+constexpr double kStretch = 1.2;        // of the impostors
+constexpr int kBoxes = 6;               // among them
+constexpr double kSmallestSide = 0.15;  // of a box, as a share of the object's diameter
+constexpr double kLargestSide = 0.8;
+constexpr std::uint64_t kBoxStream = ~std::uint64_t{0};  // of random numbers; scenes use the low ones
+constexpr double kSameDistance = 5.0;                    // of cells that show the same. Unit: mm.
+constexpr double kRightShare = 0.9;                      // of the cells of poses that show the same: right
+constexpr double kWrongShare = 0.8;                      // fewer show the same: wrong; between them nothing is learnt
+constexpr double kNearShare = 0.5;                       // of a start that is worth refining here: show the same
+constexpr double kLeastVisible = 0.3;                    // an object hidden by more teaches nothing about right poses
 // Keeps the weights finite. With 0.1 the right poses of 80 clean scans all scored 0.73 to 0.90, too little.
 constexpr double kRidge = 0.003;
 // Of the least quality, and the least odds, that came to a right pose: few scenes were looked at.
@@ -52,35 +56,64 @@ CadModel linearly_mapped(const CadModel& cad, const Eigen::Matrix3d& map) {
   return mapped;
 }
 
-// The object, then its impostors.
-std::vector<CadModel> cast_of(const CadModel& cad) {
-  std::vector<CadModel> cast = {cad};
-  cast.push_back(linearly_mapped(cad, Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal()));
+// A solid with flat faces of any size, as they lie about anywhere. Sides: shares of the object's diameter.
+CadModel random_box(double diameter, Random& random) {
+  CadModel box;
+  Eigen::Vector3d size;
+  for (int axis = 0; axis < 3; ++axis) size[axis] = diameter * random.uniform(kSmallestSide, kLargestSide);
+  for (int i = 0; i < 8; ++i) {
+    box.vertices.emplace_back((i & 1) != 0 ? size.x() : 0.0, (i & 2) != 0 ? size.y() : 0.0,
+                              (i & 4) != 0 ? size.z() : 0.0);
+  }
+  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  find_planar_faces(box, {});
+  return box;
+}
+
+// The object, its impostors, then boxes.
+struct Cast {
+  std::vector<CadModel> models;
+  int impostors = 0;
+};
+
+Cast cast_of(const CadModel& cad, std::uint64_t seed) {
+  Cast cast;
+  cast.models = {cad, linearly_mapped(cad, Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal())};
   for (int axis = 0; axis < 3; ++axis) {
     Eigen::Vector3d scale = Eigen::Vector3d::Ones();
     scale[axis] = axis == 1 ? 1.0 / kStretch : kStretch;
-    cast.push_back(linearly_mapped(cad, scale.asDiagonal()));
+    cast.models.push_back(linearly_mapped(cad, scale.asDiagonal()));
   }
+  cast.impostors = static_cast<int>(cast.models.size()) - 1;
+  Random random(~seed, kBoxStream);
+  for (int i = 0; i < kBoxes; ++i) cast.models.push_back(random_box(cad.diameter(), random));
   return cast;
 }
 
-// A quarter of the scenes each: the object alone; among two impostors; among all of them, much hidden; two impostors
-// without it.
-Scene training_scene(const std::vector<CadModel>& cast, const SensorModel& sensor,
-                     const AcceptanceTrainingOptions& options, int index) {
-  Random random(~options.seed, static_cast<std::uint64_t>(index));
-  const int last = static_cast<int>(cast.size()) - 1;
-  const int first = random.integer(1, last);
-  const int second = 1 + first % last;
-  std::vector<int> chosen;
-  if (index % 4 == 0) chosen = {0};
-  if (index % 4 == 1) chosen = {0, first, second};
-  if (index % 4 == 2) chosen = {first, second};
+// A quarter of the scenes each: the object alone; with an impostor among boxes; an impostor among boxes without it;
+// with all impostors and two boxes, much hidden.
+std::vector<int> roles(const Cast& cast, int index, Random& random) {
+  const int first_box = cast.impostors + 1;
+  std::vector<int> roles;
+  if (index % 4 != 2) roles.push_back(0);
+  if (index % 4 == 0) return roles;
   if (index % 4 == 3) {
-    for (int i = 0; i <= last; ++i) chosen.push_back(i);
+    for (int i = 1; i <= cast.impostors; ++i) roles.push_back(i);
+  } else {
+    roles.push_back(random.integer(1, cast.impostors));
   }
+  const int boxes = index % 4 == 3 ? 2 : 3;
+  const int first = random.integer(0, kBoxes - 1);
+  for (int i = 0; i < boxes; ++i) roles.push_back(first_box + (first + i) % kBoxes);
+  return roles;
+}
+
+Scene training_scene(const Cast& cast, const SensorModel& sensor, const AcceptanceTrainingOptions& options, int index) {
+  Random random(~options.seed, static_cast<std::uint64_t>(index));
+  const std::vector<int> chosen = roles(cast, index, random);
   std::vector<CadModel> models;
-  for (const int i : chosen) models.push_back(cast[static_cast<std::size_t>(i)]);
+  for (const int i : chosen) models.push_back(cast.models[static_cast<std::size_t>(i)]);
   const int count = static_cast<int>(models.size());
   Scene scene = generate_scene(models, sensor, {count, count, sensor.background}, options.seed,
                                static_cast<std::uint64_t>(index));
@@ -95,7 +128,8 @@ struct PosedModel {
 
 // The share of the cells showing either, each alone, that show the same surface.
 double same_share(const PosedModel& a, const PosedModel& b, const PinholeCamera& camera) {
-  return same_share(render(a.model, a.T_sensor_model, camera), render(b.model, b.T_sensor_model, camera), kSameDistance);
+  return same_share(render(a.model, a.T_sensor_model, camera), render(b.model, b.T_sensor_model, camera),
+                    kSameDistance);
 }
 
 // The pose moved and turned about the object's centre.
@@ -116,7 +150,7 @@ CompiledModel drawable(const CadModel& cad) {
 
 class SceneTeacher {
  public:
-  SceneTeacher(const Database& database, const std::vector<CadModel>& cast, const Scene& scene,
+  SceneTeacher(const Database& database, const Cast& cast, const Scene& scene,
                const std::vector<DescribedRegion>& regions)
       : model_(database.models().front()),
         context_{scene.scan.image, database.content().sensor.camera, database, regions,
@@ -127,7 +161,7 @@ class SceneTeacher {
       if (object.model == 0 && object.visible_fraction >= kLeastVisible) truth_ = object.T_sensor_model;
       present_ = present_ || object.model == 0;
       if (object.model > 0) {
-        impostors_.emplace_back(drawable(cast[static_cast<std::size_t>(object.model)]), object.T_sensor_model);
+        impostors_.emplace_back(drawable(cast.models[static_cast<std::size_t>(object.model)]), object.T_sensor_model);
       }
     }
   }
@@ -194,8 +228,8 @@ class SceneTeacher {
   Lessons lessons_;
 };
 
-Lessons lessons_of_scene(const std::vector<CadModel>& cast, const Database& database,
-                         const AcceptanceTrainingOptions& options, int index) {
+Lessons lessons_of_scene(const Cast& cast, const Database& database, const AcceptanceTrainingOptions& options,
+                         int index) {
   const CompiledDatabase& settings = database.content();
   const Scene scene = training_scene(cast, settings.sensor, options, index);
   const auto regions = extract_regions(scene.scan.image, settings.sensor.camera, settings.segmentation);
@@ -237,7 +271,7 @@ AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compi
   CompiledDatabase content = settings;
   content.models = {compiled};
   const Database database(std::move(content));
-  const std::vector<CadModel> cast = cast_of(cad);
+  const Cast cast = cast_of(cad, options.seed);
   std::vector<Lessons> of_scene(static_cast<std::size_t>(options.scenes));
   tbb::parallel_for(0, options.scenes, [&](int i) {
     of_scene[static_cast<std::size_t>(i)] = lessons_of_scene(cast, database, options, i);

@@ -10,6 +10,8 @@ namespace {
 constexpr double kDoubt = 30.0;           // cells against every pose, as in evidence_features
 constexpr std::size_t kFewestOfFace = 4;  // samples of a face in sight, if it has as many
 constexpr double kStay = 0.02;            // weight of the pose as it is, against 1 for all planes together
+constexpr std::size_t kStretch = 24;      // samples after which a pose may be given up, if by then
+constexpr double kHopeless = 0.6;         // of the cells looked at speak against it
 constexpr double kLeastShare = 1.0 / 3.0;
 
 void add_support(std::vector<FaceSupport>& supports, int region, int face, double cells) {
@@ -65,7 +67,14 @@ std::vector<PoseChecker::Sample> PoseChecker::choose_samples(const CompiledModel
       chosen.push_back({model.surface.points[point].position, faces[f], area});
     }
   }
-  return chosen;
+  // Every stretch of the list looks at all faces, so that a hopeless pose shows soon.
+  std::vector<Sample> spread;
+  spread.reserve(chosen.size());
+  const std::size_t stretches = (chosen.size() + kStretch - 1) / kStretch;
+  for (std::size_t first = 0; first < stretches; ++first) {
+    for (std::size_t i = first; i < chosen.size(); i += stretches) spread.push_back(chosen[i]);
+  }
+  return spread;
 }
 
 const std::vector<PoseChecker::Sample>& PoseChecker::samples_of(int model, int aspect) {
@@ -83,7 +92,9 @@ PoseCheck PoseChecker::check(int model, const Pose& T_sensor_model) {
   const Eigen::Vector3d to_sensor = -(T_sensor_model.rotation.transpose() * (T_sensor_model * compiled.centre));
   if (!(to_sensor.norm() > 0.0)) return check;
   const PinholeCamera& camera = scan_.camera;
+  std::size_t looked_at = 0;
   for (const Sample& sample : samples_of(model, sphere_.cell_of(to_sensor.normalized()))) {
+    if (looked_at++ % kStretch == 0 && check.contradicted > kHopeless * check.total) break;
     const Eigen::Vector3d point = T_sensor_model * sample.position.cast<double>();
     if (!(point.z() > 0.0)) continue;
     const Eigen::Vector3d ray = point / point.z();

@@ -24,7 +24,7 @@ struct Candidate {
 };
 
 constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
-constexpr double kRivalView = 0.7;             // of the cells a rival's start must show alike to be worth refining
+constexpr double kRivalView = 0.9;             // of the cells a rival's start must show alike to be worth refining
 
 class TwoWaySearch {
  public:
