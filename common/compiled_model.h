@@ -58,8 +58,9 @@ enum EvidenceFeature : int {
   kFoundPieces,        // triangles at least half explained, of those with data
   kAmount,             // how much there is to go by: towards 1 with the number of owned cells
   kOtherSurfaces,      // explained cells that are not of the surface with most of them
+  kHiddenBehindOne,    // hidden share times the share of that surface: one surface, and the rest cannot be checked
 };
-inline constexpr int kEvidenceFeatureCount = 7;
+inline constexpr int kEvidenceFeatureCount = 8;
 
 // How probable it is that a pose with this evidence is right: a logistic model that the compiler fits to simulated right
 // and wrong poses of the object.

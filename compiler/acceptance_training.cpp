@@ -254,7 +254,7 @@ LogisticFit fit_with_signs(Eigen::MatrixXd features, const Eigen::VectorXd& labe
     LogisticFit fit = fit_logistic(features, labels, kRidge);
     bool all_fit = true;
     for (int k = 0; k < kEvidenceFeatureCount; ++k) {
-      const bool speaks_for = k == kOwnedShare || k >= kFoundPieces;
+      const bool speaks_for = k == kOwnedShare || k == kFoundPieces || k == kAmount || k == kOtherSurfaces;
       const bool right_sign = speaks_for ? fit.weights[k] >= 0.0 : fit.weights[k] <= 0.0;
       if (right_sign) continue;
       features.col(k).setZero();  // the ridge then makes its weight zero

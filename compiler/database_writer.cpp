@@ -105,6 +105,7 @@ void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
   message.set_found_pieces(acceptance.weights[kFoundPieces]);
   message.set_amount(acceptance.weights[kAmount]);
   message.set_other_surfaces(acceptance.weights[kOtherSurfaces]);
+  message.set_hidden_behind_one(acceptance.weights[kHiddenBehindOne]);
   message.set_bias(acceptance.bias);
   message.set_least_quality(acceptance.least_quality);
   message.set_least_probability(acceptance.least_probability);

@@ -153,6 +153,7 @@ AcceptanceModel from_message(const v1::AcceptanceModel& message) {
   acceptance.weights[kFoundPieces] = message.found_pieces();
   acceptance.weights[kAmount] = message.amount();
   acceptance.weights[kOtherSurfaces] = message.other_surfaces();
+  acceptance.weights[kHiddenBehindOne] = message.hidden_behind_one();
   acceptance.bias = message.bias();
   acceptance.least_quality = message.least_quality();
   acceptance.least_probability = message.least_probability();

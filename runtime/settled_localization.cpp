@@ -4,7 +4,8 @@ namespace foresight {
 namespace {
 
 constexpr int kSettlings = 3;
-constexpr double kReach = 20.0;             // Unit: mm.
+constexpr double kReach = 12.0;  // Unit: mm.
+constexpr int kMostRounds = 12;
 constexpr double kLocalizationError = 1.0;  // one step. Unit: mm.
 
 }  // namespace
@@ -15,16 +16,22 @@ PoseCheckOptions settling_options(const SensorModel& sensor) {
   return options;
 }
 
+Pose settle(const ScanContext& scan, int model, Pose pose, PoseChecker& settling) {
+  const CompiledModel& compiled = scan.database.models()[static_cast<std::size_t>(model)];
+  for (int i = 0; i < kSettlings; ++i) {
+    pose = refit_to_planes(compiled, pose, settling.check(model, pose), scan.regions);
+  }
+  return pose;
+}
+
 Localization localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model, const Pose& start,
                                  const RecognizeOptions& options, PoseChecker& settling) {
   const CompiledModel& compiled = scan.database.models()[static_cast<std::size_t>(model)];
   LocalizationOptions localization = localization_options(options);
   localization.reach = kReach;
+  localization.most_rounds = kMostRounds;
   Localization localized = localize(compiled, scan.sphere, start, scan.data, localization);
-  Pose settled = localized.T_sensor_model;
-  for (int i = 0; i < kSettlings; ++i) {
-    settled = refit_to_planes(compiled, settled, settling.check(model, settled), scan.regions);
-  }
+  const Pose settled = settle(scan, model, localized.T_sensor_model, settling);
   EvidenceOptions fine;
   fine.distance = agreeing_distance(labelled.sensor);
   const auto balance = [&](const Pose& pose) {

@@ -13,6 +13,9 @@ inline constexpr double kStartDistance = 8.0;
 // How a scan is looked at to settle a pose: planes farther away than what localization leaves are other planes.
 [[nodiscard]] PoseCheckOptions settling_options(const SensorModel& sensor);
 
+// The pose moved onto the planes it touches, a few times over.
+[[nodiscard]] Pose settle(const ScanContext& scan, int model, Pose pose, PoseChecker& settling);
+
 // Localization ends within its steps of a millimetre and a degree; the planes of regions, fitted to hundreds of cells,
 // know better. The settled pose is taken where the scan agrees with it more. Template points without data near pull
 // nowhere (LocalizationOptions::reach): starts are near, and searches for far data are most of the time at wrong ones.

@@ -96,8 +96,7 @@ class TwoWaySearch {
     watch_.lap(result_.milliseconds.verify);
     Candidate candidate;
     candidate.start = start;
-    candidate.localization =
-        localize_and_settle(scan_, labelled_, starts_[start].model, from, options_, settling_);
+    candidate.localization = localize_and_settle(scan_, labelled_, starts_[start].model, from, options_, settling_);
     ++result_.statistics.verifications;
     result_.statistics.energy_evaluations += candidate.localization.energy_evaluations;
     watch_.lap(result_.milliseconds.localize);
@@ -111,6 +110,7 @@ class TwoWaySearch {
     Candidate candidate = refined(i, starts_[i].T_sensor_model);
     if (candidate.probability < two_way_.accepted) return;
     prefer_near_symmetric(candidate);
+    prefer_rival(candidate);
     if (candidate.probability >= two_way_.sure) {
       accept(candidate);
     } else {
@@ -126,6 +126,27 @@ class TwoWaySearch {
       const Candidate other = refined(candidate.start, turned);
       if (other.probability > candidate.probability) candidate = other;
     }
+  }
+
+  // Other starts for the same regions, of any object, may explain them better still. What they explain when settled on
+  // planes tells which are worth localizing.
+  void prefer_rival(Candidate& candidate) {
+    int looked_at = 0;
+    for (std::size_t i = candidate.start + 1; i < starts_.size() && looked_at < two_way_.most_rivals; ++i) {
+      if (!shares_region(starts_[i], starts_[candidate.start]) || uses_taken(starts_[i])) continue;
+      ++looked_at;
+      const Pose settled = settle(scan_, starts_[i].model, starts_[i].T_sensor_model, settling_);
+      if (already_known({candidate}, i, settled)) continue;
+      const double probability = probability_right(model_of(i).acceptance, evidence(i, settled));
+      if (probability <= candidate.probability) continue;
+      const Candidate rival = refined(i, settled);
+      if (rival.probability > candidate.probability) candidate = rival;
+    }
+  }
+
+  [[nodiscard]] static bool shares_region(const StartPose& a, const StartPose& b) {
+    return std::any_of(a.regions.begin(), a.regions.end(),
+                       [&](int region) { return std::count(b.regions.begin(), b.regions.end(), region) > 0; });
   }
 
   // Takes the regions that the pose explains for the most part, and those it was made of.
@@ -166,15 +187,13 @@ class TwoWaySearch {
   // What else would show the same: other poses and objects that fit where this one does.
   std::vector<Alternative> alternatives(const Candidate& candidate) {
     const Rendering view = drawn(candidate.start, candidate.pose());
-    const std::vector<int>& regions = starts_[candidate.start].regions;
     std::vector<Candidate> found = {candidate};
     int looked_at = 0;
     for (std::size_t i = 0; i < starts_.size() && looked_at < two_way_.most_rivals; ++i) {
       const StartPose& rival = starts_[i];
-      const bool shares = std::any_of(rival.regions.begin(), rival.regions.end(), [&](int region) {
-        return std::count(regions.begin(), regions.end(), region) > 0;
-      });
-      if (!shares || uses_taken(rival) || already_known(found, i, rival.T_sensor_model)) continue;
+      if (!shares_region(rival, starts_[candidate.start]) || uses_taken(rival) ||
+          already_known(found, i, rival.T_sensor_model))
+        continue;
       ++looked_at;
       if (same_share(view, drawn(i, rival.T_sensor_model), two_way_.same_distance) < kRivalView) continue;
       const Candidate other = refined(i, rival.T_sensor_model);
