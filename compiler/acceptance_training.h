@@ -10,7 +10,7 @@
 namespace foresight {
 
 struct AcceptanceTrainingOptions {
-  int scenes = 48;  // simulated. Limit: >= 4, one of each kind.
+  int scenes = 36;  // simulated. Limit: >= 4, one of each kind.
   // Of the starts in a scene, best looking first, so many are looked at, and of these so many refined near the true
   // pose and so many elsewhere. Limit: >= 1.
   int most_starts = 60;
