@@ -60,6 +60,7 @@ void expect_same(const CompiledModel& a, const CompiledModel& b) {
   EXPECT_EQ(a.acceptance.weights, b.acceptance.weights);
   EXPECT_EQ(a.acceptance.bias, b.acceptance.bias);
   EXPECT_EQ(a.acceptance.least_quality, b.acceptance.least_quality);
+  EXPECT_EQ(a.acceptance.least_probability, b.acceptance.least_probability);
   EXPECT_EQ(a.acceptance.samples, b.acceptance.samples);
   ASSERT_EQ(a.symmetries.size(), b.symmetries.size());
   for (std::size_t i = 0; i < a.symmetries.size(); ++i) {
@@ -70,6 +71,7 @@ void expect_same(const CompiledModel& a, const CompiledModel& b) {
   }
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_EQ(a.triangle_faces, b.triangle_faces);
 }
 
 TEST(DatabaseWriter, what_is_written_is_read_field_by_field) {
@@ -105,6 +107,14 @@ TEST(DatabaseWriter, a_model_without_symmetries_stays_without) {
   const CompiledDatabase read = decode_database(encode_database(database), "x.db");
   EXPECT_TRUE(read.models[0].symmetries.empty());
   EXPECT_FALSE(read.models[1].symmetries.empty());
+}
+
+TEST(DatabaseWriter, a_model_without_faces_of_triangles_stays_without) {
+  CompiledDatabase database = test::synthetic_database();
+  database.models[0].triangle_faces.clear();
+  const CompiledDatabase read = decode_database(encode_database(database), "x.db");
+  EXPECT_TRUE(read.models[0].triangle_faces.empty());
+  EXPECT_EQ(read.models[1].triangle_faces, database.models[1].triangle_faces);
 }
 
 TEST(DatabaseWriter, same_content_gives_the_same_bytes) {

@@ -262,6 +262,45 @@ TEST(SceneGenerator, visibility_counts_the_cells_of_the_scan) {
   }
 }
 
+// Cells on an object alone.
+int cells_alone(const SceneObject& object, const std::vector<CadModel>& models, const SensorModel& sensor) {
+  const PlacedObject lone{&model_of(object, models), object.T_sensor_model};
+  const SimulatedScan scan = SimulatedScene({&lone, 1}).scan(sensor, Random(0));
+  return static_cast<int>(
+      std::count_if(scan.labels.begin(), scan.labels.end(), [](const CellLabel& label) { return label.object == 0; }));
+}
+
+// Objects too many to fit, so that some reach over the border of the image.
+TEST(SceneGenerator, what_lies_beyond_the_image_is_not_visible) {
+  std::vector<CadModel> models;
+  for (int i = 0; i < 6; ++i) models.push_back(test::box(150, 150, 100));
+  SensorModel wide = small_sensor();
+  constexpr int kMargin = 150;
+  wide.camera.columns += 2 * kMargin;
+  wide.camera.rows += 2 * kMargin;
+  wide.camera.cx += kMargin;
+  wide.camera.cy += kMargin;
+  int reaching_over = 0;
+  int about_half = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Scene scene = generate_scene(models, small_sensor(), {6, 6, false}, seed, 0);
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+      const SceneObject& object = scene.objects[i];
+      const auto seen = std::count_if(scene.scan.labels.begin(), scene.scan.labels.end(),
+                                      [&](const CellLabel& label) { return label.object == static_cast<int>(i); });
+      const int whole = cells_alone(object, models, wide);
+      ASSERT_GT(whole, 100);
+      EXPECT_NEAR(object.visible_fraction, static_cast<double>(seen) / whole, 0.02) << seed << " " << i;
+      const double inside = static_cast<double>(cells_alone(object, models, small_sensor())) / whole;
+      EXPECT_LE(object.visible_fraction, inside + 0.02);
+      reaching_over += inside < 0.95 ? 1 : 0;
+      about_half += inside > 0.35 && inside < 0.65 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(reaching_over, 5);
+  EXPECT_GT(about_half, 0);
+}
+
 TEST(SceneGenerator, truth_file_says_what_the_scenes_hold) {
   const std::vector<CadModel> models = six_models();
   const SensorModel sensor = small_sensor();

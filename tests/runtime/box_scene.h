@@ -49,6 +49,16 @@ inline std::vector<std::array<int, 3>> box_triangles() {
   return triangles;
 }
 
+// Geometry only: no statistics.
+inline ModelFace box_face(int f) {
+  ModelFace face;
+  face.normal = box_normal(f);
+  face.centroid = kBoxCentre + box_normal(f).cwiseProduct(box_half_size());
+  face.offset = face.normal.dot(face.centroid);
+  face.area = 4.0 * box_half_size()[(f / 2 + 1) % 3] * box_half_size()[(f / 2 + 2) % 3];
+  return face;
+}
+
 // Neighbours of the point at a place in the grid: those one spacing away along an axis.
 inline std::vector<int> box_neighbours(const Eigen::Vector3i& at, const std::map<std::array<int, 3>, int>& index) {
   std::vector<int> neighbours;
@@ -97,9 +107,10 @@ inline CompiledModel box_model() {
   model.name = "box";
   model.centre = kBoxCentre;
   model.diameter = 2.0 * box_half_size().norm();
-  model.faces.resize(6);
+  for (int f = 0; f < 6; ++f) model.faces.push_back(box_face(f));
   model.vertices = box_corners();
   model.triangles = box_triangles();
+  model.triangle_faces = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
   model.surface.spacing = kBoxSpacing;
   model.surface.points = box_points();
   const ViewingSphere sphere(kAspectCells);

@@ -268,6 +268,22 @@ TEST(DecodeDatabase, refuses_bad_meshes) {
   expect_model_inconsistent("triangle 3: ", [](CompiledModel& m) { m.triangles[3][1] = -1; });
 }
 
+TEST(DecodeDatabase, refuses_bad_faces_of_triangles) {
+  expect_model_inconsistent("not every triangle has a face", [](CompiledModel& m) { m.triangle_faces.pop_back(); });
+  expect_model_inconsistent("not every triangle has a face", [](CompiledModel& m) { m.triangle_faces.push_back(0); });
+  expect_model_inconsistent("triangle 2: ", [](CompiledModel& m) { m.triangle_faces[2] = 4; });
+  expect_model_inconsistent("triangle 0: ", [](CompiledModel& m) { m.triangle_faces[0] = -1; });
+  const std::string bytes = with_messages([](v1::Header&, v1::Model& m) { m.set_triangle_faces(1, 0xFFFFFFFF); });
+  EXPECT_EQ(error_of(bytes).fault(), DatabaseFault::inconsistent);
+}
+
+TEST(DecodeDatabase, takes_databases_of_compilers_that_knew_no_faces_of_triangles) {
+  const std::string bytes = with_messages([](v1::Header&, v1::Model& m) { m.clear_triangle_faces(); });
+  const CompiledDatabase read = decode_database(bytes, "x.db");
+  EXPECT_TRUE(read.models[0].triangle_faces.empty());
+  EXPECT_FALSE(read.models[1].triangle_faces.empty());
+}
+
 TEST(DecodeDatabase, refuses_bad_acceptance_models) {
   const auto expect_bad = [](const std::string& words, const std::function<void(AcceptanceModel&)>& change) {
     expect_model_inconsistent(words, [&](CompiledModel& m) { change(m.acceptance); });
@@ -278,9 +294,12 @@ TEST(DecodeDatabase, refuses_bad_acceptance_models) {
     }
     expect_bad("a weight of the acceptance model", [&](AcceptanceModel& a) { a.bias = value; });
     expect_bad("what the acceptance model asks of a start", [&](AcceptanceModel& a) { a.least_quality = value; });
+    expect_bad("what the acceptance model asks of a start", [&](AcceptanceModel& a) { a.least_probability = value; });
   }
   expect_bad("what the acceptance model asks of a start", [](AcceptanceModel& a) { a.least_quality = -0.01; });
   expect_bad("what the acceptance model asks of a start", [](AcceptanceModel& a) { a.least_quality = 1.01; });
+  expect_bad("what the acceptance model asks of a start", [](AcceptanceModel& a) { a.least_probability = -0.01; });
+  expect_bad("what the acceptance model asks of a start", [](AcceptanceModel& a) { a.least_probability = 1.01; });
   const std::string bytes =
       with_messages([](v1::Header&, v1::Model& m) { m.mutable_acceptance()->set_samples(0xFFFFFFFF); });
   EXPECT_EQ(error_of(bytes).fault(), DatabaseFault::inconsistent);
@@ -326,12 +345,12 @@ TEST(DecodeDatabase, takes_databases_of_compilers_that_knew_no_symmetries) {
   EXPECT_TRUE(decode_database(bytes, "x.db").models[0].symmetries.empty());
 }
 
-TEST(CheckMethod, two_way_needs_an_acceptance_model_of_every_object) {
+// Of the second model, something the two-way method needs is taken away.
+void expect_refused_by_two_way_only(const std::function<void(CompiledModel&)>& take_away) {
   RecognizeOptions paper;
   paper.method = Method::paper;
-  EXPECT_NO_THROW(check_method({}, Database(test::synthetic_database()), "x.db"));
   CompiledDatabase content = test::synthetic_database();
-  content.models[1].acceptance = {};
+  take_away(content.models[1]);
   const Database old(std::move(content));
   EXPECT_NO_THROW(check_method(paper, old, "x.db"));
   try {
@@ -341,7 +360,20 @@ TEST(CheckMethod, two_way_needs_an_acceptance_model_of_every_object) {
     EXPECT_EQ(error.fault(), DatabaseFault::incompatible);
     EXPECT_EQ(error.file(), "x.db");
     EXPECT_NE(error.cause().find(old.models()[1].name), std::string::npos) << error.cause();
+    EXPECT_NE(error.mend().find("--method paper"), std::string::npos) << error.mend();
   }
+}
+
+TEST(CheckMethod, accepts_a_database_that_holds_all) {
+  EXPECT_NO_THROW(check_method({}, Database(test::synthetic_database()), "x.db"));
+}
+
+TEST(CheckMethod, two_way_needs_an_acceptance_model_of_every_object) {
+  expect_refused_by_two_way_only([](CompiledModel& m) { m.acceptance = {}; });
+}
+
+TEST(CheckMethod, two_way_needs_the_faces_of_every_objects_triangles) {
+  expect_refused_by_two_way_only([](CompiledModel& m) { m.triangle_faces.clear(); });
 }
 
 TEST(DecodeSensor, knows_a_sensor_from_other_bytes) {

@@ -319,5 +319,74 @@ TEST(Localization, gives_the_same_bits_again) {
   EXPECT_EQ(first.energy_evaluations, second.energy_evaluations);
 }
 
+LocalizationOptions reaching(double reach) {
+  LocalizationOptions options;
+  options.reach = reach;
+  return options;
+}
+
+TEST(LocalizationReach, a_reach_beyond_all_data_changes_nothing) {
+  const CompiledModel model = box_model();
+  const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));
+  for (int i = 0; i < 5; ++i) {
+    const Pose start = start_near(box_pose(), i, 8.0, 8.0);
+    const Localization all = localize(model, sphere(), start, data, {});
+    const Localization reached = localize(model, sphere(), start, data, reaching(1e4));
+    EXPECT_TRUE(same(all.T_sensor_model, reached.T_sensor_model)) << i;
+    EXPECT_EQ(all.energy, reached.energy);
+    EXPECT_EQ(all.energy_evaluations, reached.energy_evaluations);
+  }
+}
+
+TEST(LocalizationReach, points_without_data_near_count_as_at_the_reach) {
+  const CompiledModel model = box_model();
+  const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));
+  const Pose pose = start_near(box_pose(), 1, 12.0, 10.0);
+  const std::vector<int> visible = visible_points(model, sphere(), pose);
+  const EnergyEvaluation all = evaluate_energy(model, visible, pose, data, {});
+  const LocalizationOptions options = reaching(5.0);
+  const EnergyEvaluation near = evaluate_energy(model, visible, pose, data, options);
+  ASSERT_EQ(all.residuals.size(), near.residuals.size());
+  double energy = 0.0;
+  int beyond = 0;
+  for (std::size_t i = 0; i < all.residuals.size(); ++i) {
+    const bool reached = all.residuals[i].distance < options.reach;
+    EXPECT_EQ(near.residuals[i].data_index >= 0, reached);
+    EXPECT_NEAR(near.residuals[i].distance, reached ? all.residuals[i].distance : options.reach, 1e-4);
+    energy += rho(options.loss, near.residuals[i].distance / options.sigma);
+    beyond += reached ? 0 : 1;
+  }
+  EXPECT_NEAR(near.energy, energy, 1e-6);
+  EXPECT_LT(near.energy, all.energy);
+  EXPECT_GT(beyond, 10);
+  EXPECT_LT(beyond, static_cast<int>(all.residuals.size()) - 10);
+}
+
+TEST(LocalizationReach, points_without_data_near_pull_nowhere) {
+  const CompiledModel model = box_model();
+  const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));
+  const Pose far = moved(box_pose(), {0, 0, 100}, {0, 0, 0});
+  const std::vector<int> visible = visible_points(model, sphere(), far);
+  const LocalizationOptions options = reaching(20.0);
+  const EnergyGradient gradient =
+      energy_gradient(evaluate_energy(model, visible, far, data, options), far * kBoxCentre, options);
+  EXPECT_NEAR(gradient.translation.norm(), 0.0, 1e-3);
+  const EnergyGradient pulled = energy_gradient(evaluate_energy(model, visible, far, data, {}), far * kBoxCentre, {});
+  EXPECT_GT(pulled.translation.norm(), 1.0);
+  EXPECT_TRUE(same(localize(model, sphere(), far, data, options).T_sensor_model, far));
+  EXPECT_FALSE(same(localize(model, sphere(), far, data, {}).T_sensor_model, far));
+}
+
+TEST(LocalizationReach, starts_near_the_truth_converge_all_the_same) {
+  const CompiledModel model = box_model();
+  const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));
+  int converged = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Localization found = localize(model, sphere(), start_near(box_pose(), i, 8.0, 6.0), data, reaching(20.0));
+    converged += close(found.T_sensor_model, box_pose(), 1.5) ? 1 : 0;
+  }
+  EXPECT_GE(converged, 18);
+}
+
 }  // namespace
 }  // namespace foresight

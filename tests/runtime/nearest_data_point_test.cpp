@@ -112,5 +112,54 @@ TEST(NearestDataPoint, answers_the_same_from_several_threads) {
   EXPECT_EQ(answers[0], answers[2]);
 }
 
+TEST(NearestDataPoint, within_reach_it_is_the_nearest_of_all) {
+  Random random(6);
+  int near = 0;
+  int far = 0;
+  for (int trial = 0; trial < 10; ++trial) {
+    const RangeImage image = random_image(random, random.integer(1, 30), random.integer(1, 30));
+    const NearestDataPoint data(image);
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector3f query = random_point(random, 150.0);
+      const NearestDataPoint::Answer nearest = data.find(query);
+      for (const float reach : {0.9F * nearest.distance, 1.1F * nearest.distance, 500.0F}) {
+        const NearestDataPoint::Answer answer = data.find_within(query, reach);
+        if (reach > nearest.distance) {
+          EXPECT_EQ(answer.index, nearest.index);
+          EXPECT_EQ(answer.cell, nearest.cell);
+          EXPECT_EQ(answer.point, nearest.point);
+          EXPECT_EQ(answer.distance, nearest.distance);
+          ++near;
+        } else {
+          EXPECT_EQ(answer.index, -1);
+          EXPECT_EQ(answer.point, query);
+          EXPECT_FLOAT_EQ(answer.distance, reach);
+          ++far;
+        }
+      }
+    }
+  }
+  EXPECT_GT(near, 1000);
+  EXPECT_GE(far, 1000);
+}
+
+TEST(NearestDataPoint, a_guess_changes_no_answer_within_reach) {
+  Random random(7);
+  const RangeImage image = random_image(random, 40, 40);
+  const NearestDataPoint data(image);
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3f query = random_point(random, 150.0);
+    const Eigen::Vector3f other = query + 20.0F * random.direction().cast<float>();
+    const int guess = i % 3 == 0 ? data.find(random_point(random, 150.0)).index : data.find(other).index;
+    EXPECT_EQ(data.find(query, guess).distance, data.find(query).distance);
+    for (const float reach : {5.0F, 15.0F, 60.0F}) {
+      const NearestDataPoint::Answer plain = data.find_within(query, reach);
+      const NearestDataPoint::Answer guessed = data.find_within(query, reach, guess);
+      EXPECT_EQ(guessed.distance, plain.distance);
+      EXPECT_EQ(guessed.index < 0, plain.index < 0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace foresight

