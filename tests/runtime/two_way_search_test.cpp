@@ -223,6 +223,22 @@ TEST(TwoWaySearch, a_sure_pose_is_accepted_at_once) {
   }
 }
 
+// Whatever is tried is accepted here, and takes a region at least.
+TEST(TwoWaySearch, a_credulous_judge_accepts_no_more_than_there_are_regions) {
+  TwoWayOptions alone;
+  alone.most_rivals = 0;
+  for (std::uint64_t index = 0; index < 3; ++index) {
+    const RangeImage image = visible_scene(2, index).scan.image;
+    const auto regions = extract_regions(image, camera(), compiled_objects().content().segmentation);
+    RecognizeOptions enough;
+    enough.most_detections = 2 * static_cast<int>(regions.size());
+    const AcceptanceModel credulous{{}, 10.0, 0.0, 0.0, 1};
+    const std::size_t found = search(judged_by(credulous), image, alone, enough).detections.size();
+    EXPECT_GT(found, 0U);
+    EXPECT_LE(found, regions.size());
+  }
+}
+
 TEST(TwoWaySearch, unsure_poses_wait_for_more_probable_ones) {
   AcceptanceModel judge;  // owned cells speak for a pose, none is sure
   judge.weights[kOwnedShare] = 2.5;
