@@ -223,6 +223,22 @@ TEST(TwoWaySearch, a_sure_pose_is_accepted_at_once) {
   }
 }
 
+// Whatever is tried is accepted here, and takes a region at least.
+TEST(TwoWaySearch, a_credulous_judge_accepts_no_more_than_there_are_regions) {
+  TwoWayOptions alone;
+  alone.most_rivals = 0;
+  for (std::uint64_t index = 0; index < 3; ++index) {
+    const RangeImage image = visible_scene(2, index).scan.image;
+    const auto regions = extract_regions(image, camera(), compiled_objects().content().segmentation);
+    RecognizeOptions enough;
+    enough.most_detections = 2 * static_cast<int>(regions.size());
+    const AcceptanceModel credulous{{}, 10.0, 0.0, 0.0, 1};
+    const std::size_t found = search(judged_by(credulous), image, alone, enough).detections.size();
+    EXPECT_GT(found, 0U);
+    EXPECT_LE(found, regions.size());
+  }
+}
+
 TEST(TwoWaySearch, unsure_poses_wait_for_more_probable_ones) {
   AcceptanceModel judge;  // owned cells speak for a pose, none is sure
   judge.weights[kOwnedShare] = 2.5;
@@ -492,37 +508,52 @@ TEST(TwoWaySearch, names_the_pose_that_shows_the_face_in_sight_the_other_way_rou
   EXPECT_TRUE(has_half_turn(turns_of_alternatives(judged(test::learned_block()), 2)));
 }
 
-// Half a turn about each axis takes the block almost into itself, but for the cut corner.
-TEST(TwoWaySearch, of_poses_that_look_almost_the_same_the_better_one_is_reported) {
+// Half a turn about each axis takes the block almost into itself, but for the cut corner. Statistics and template know
+// nothing of that corner: starts turned so look equally well, and only the evidence of the surface drawn tells them
+// apart.
+CompiledModel block_with_unknown_corner() {
   CompiledModel block = judged(test::learned_block());
   for (int axis = 0; axis < 3; ++axis) {
-    block.symmetries.push_back(
-        {{rotation_from_vector(std::numbers::pi * Eigen::Vector3d::Unit(axis)), {0, 0, 0}}, false, 0.9});
+    const Eigen::Matrix3d turn = rotation_from_vector(std::numbers::pi * Eigen::Vector3d::Unit(axis));
+    block.symmetries.push_back({{turn, {0, 0, 0}}, false, 0.9});
   }
+  std::erase_if(block.surface.points, [](const TemplatePoint& point) {
+    const Eigen::Vector3f from_corner = Eigen::Vector3f(35, 25, 20) - point.position.cwiseAbs();
+    return from_corner.cwiseQuotient(Eigen::Vector3f(35, 25, 20)).sum() < 1.05F;
+  });
+  for (const std::size_t face : {1U, 3U, 5U}) {
+    block.faces[face].area = block.faces[face - 1].area;
+    block.faces[face].densities = block.faces[face - 1].densities;
+  }
+  block.faces[6].views_found = 0;
+  block.faces[6].densities = {};
+  std::erase_if(block.pairs, [](const FacePair& pair) { return pair.second == 6; });
+  return block;
+}
+
+TEST(TwoWaySearch, of_poses_that_look_almost_the_same_the_better_one_is_reported) {
+  const CompiledModel block = block_with_unknown_corner();
   const Database database = test::database_of({block});
   Random random(51);
-  int right = 0;
-  int views = 0;
-  while (views < 8) {
+  for (int views = 0; views < 12;) {
     const Pose truth = test::random_pose(block, random);
     const RangeImage image = test::image_of({{&block, truth}});
     const auto regions = extract_regions(image, PinholeCamera{}, {});
     const bool shows_cut = std::any_of(regions.begin(), regions.end(), [&](const DescribedRegion& region) {
-      return region.region.cells.size() > 200 && test::face_shown(block, truth, region) == 6;
+      return region.region.cells.size() > 250 && test::face_shown(block, truth, region) == 6;
     });
-    if (!shows_cut || regions.size() < 3) continue;
+    if (!shows_cut || regions.size() < 4) continue;
     ++views;
     const RecognitionResult result = search(database, image);
-    if (result.detections.empty()) continue;
+    ASSERT_FALSE(result.detections.empty()) << views;
     const Pose found = test::pose_of(result.detections[0]);
-    right += rotation_angle(found.rotation.transpose() * truth.rotation) < 0.05 ? 1 : 0;
+    EXPECT_LT(rotation_angle(found.rotation.transpose() * truth.rotation), 0.05) << views;
     const SensorModel sensor;
     const LabelledScan scan = label_scan(image, sensor.camera, sensor, regions);
     for (const Pose& turned : near_symmetric_poses(block, found)) {
       EXPECT_GE(result.detections[0].score, probability_right(block.acceptance, fine_evidence(block, turned, scan)));
     }
   }
-  EXPECT_GE(right, 7);
 }
 
 TEST(TwoWaySearch, finds_nothing_in_an_unknown_box) {
