@@ -156,7 +156,8 @@ std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& 
   features[kHiddenShare] = evidence.front / drawn;
   features[kFoundPieces] = static_cast<double>(evidence.pieces_found) / std::max(1, evidence.pieces);
   features[kAmount] = evidence.owned / (kMuch + evidence.owned);
-  features[kOtherSurfaces] = 1.0 - static_cast<double>(evidence.largest) / std::max(1, evidence.explained);
+  features[kOtherSurfaces] =
+      evidence.explained > 0 ? 1.0 - static_cast<double>(evidence.largest) / evidence.explained : 0.0;
   features[kHiddenBehindOne] = features[kHiddenShare] * (1.0 - features[kOtherSurfaces]);
   return features;
 }

@@ -96,15 +96,16 @@ class StartSearch {
     keep(std::move(best), std::move(check));
   }
 
+  // All that look like something are kept: one surface often fits in several ways, and the answer has to say so.
   void try_single(const RatedMatch& match) {
     ++counts_.hypotheses;
-    StartPose best;
-    best.model = match.model;
-    PoseCheck check;
     for (const Pose& pose : single_starts(database_, shapes_, regions_, match, rater_.is_cut(region(match)))) {
-      consider(best, check, pose, {match.region});
+      StartPose start;
+      start.model = match.model;
+      PoseCheck check;
+      consider(start, check, pose, {match.region});
+      keep(std::move(start), std::move(check));
     }
-    keep(std::move(best), std::move(check));
   }
 
   // The matches that go best with both, of regions whose plane fixes the point of the pair's line and that see the

@@ -29,16 +29,17 @@ constexpr double kRivalView = 0.9;             // of the cells a rival's start m
 class TwoWaySearch {
  public:
   TwoWaySearch(const ScanContext& scan, const RecognizeOptions& options, const TwoWayOptions& two_way,
-               RecognitionResult& result)
+               const Deadline& deadline, RecognitionResult& result)
       : scan_(scan),
         options_(options),
         two_way_(two_way),
+        deadline_(deadline),
         result_(result),
         labelled_(label_scan(scan.image, scan.camera, scan.database.content().sensor, scan.regions)),
         checker_(scan.database, labelled_),
         settling_(scan.database, labelled_, settling_options(labelled_.sensor)) {}
 
-  void run(const Deadline& deadline) {
+  void run() {
     StartSearchCounts counts;
     starts_ = find_starts(scan_.database, labelled_, {}, counts);
     result_.statistics.threshold_matches = counts.matches;
@@ -46,7 +47,7 @@ class TwoWaySearch {
     result_.statistics.hypotheses = counts.hypotheses;
     result_.statistics.pose_checks = counts.checks;
     watch_.lap(result_.milliseconds.hypotheses);
-    for (std::size_t i = 0; i < starts_.size() && !limits_reached(options_, deadline, result_); ++i) {
+    for (std::size_t i = 0; i < starts_.size() && !out_of_limits(); ++i) {
       if (!uses_taken(starts_[i])) try_start(i);
     }
     decide_among_candidates();
@@ -56,6 +57,7 @@ class TwoWaySearch {
   [[nodiscard]] const CompiledModel& model_of(std::size_t start) const {
     return scan_.database.models()[static_cast<std::size_t>(starts_[start].model)];
   }
+  [[nodiscard]] bool out_of_limits() const { return limits_reached(options_, deadline_, result_); }
   [[nodiscard]] bool uses_taken(const StartPose& start) const {
     return std::any_of(start.regions.begin(), start.regions.end(),
                        [&](int region) { return labelled_.taken[static_cast<std::size_t>(region)]; });
@@ -122,6 +124,7 @@ class TwoWaySearch {
   void prefer_near_symmetric(Candidate& candidate) {
     const double least = kNearSymmetricQuality * quality(candidate.start, candidate.pose());
     for (const Pose& turned : near_symmetric_poses(model_of(candidate.start), candidate.pose())) {
+      if (out_of_limits()) return;
       if (quality(candidate.start, turned) < least) continue;
       const Candidate other = refined(candidate.start, turned);
       if (other.probability > candidate.probability) candidate = other;
@@ -139,6 +142,7 @@ class TwoWaySearch {
       if (already_known({candidate}, i, settled)) continue;
       const double probability = probability_right(model_of(i).acceptance, evidence(i, settled));
       if (probability <= candidate.probability) continue;
+      if (out_of_limits()) return;
       const Candidate rival = refined(i, settled);
       if (rival.probability > candidate.probability) candidate = rival;
     }
@@ -196,6 +200,7 @@ class TwoWaySearch {
         continue;
       ++looked_at;
       if (same_share(view, drawn(i, rival.T_sensor_model), two_way_.same_distance) < kRivalView) continue;
+      if (out_of_limits()) break;
       const Candidate other = refined(i, rival.T_sensor_model);
       if (other.probability < two_way_.accepted || already_known(found, i, other.pose())) continue;
       if (same_share(view, drawn(i, other.pose()), two_way_.same_distance) < two_way_.same_view) continue;
@@ -245,6 +250,7 @@ class TwoWaySearch {
   const ScanContext& scan_;
   const RecognizeOptions& options_;
   const TwoWayOptions two_way_;
+  const Deadline& deadline_;
   RecognitionResult& result_;
   LabelledScan labelled_;
   PoseChecker checker_;
@@ -259,7 +265,7 @@ class TwoWaySearch {
 
 void search_two_way(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,
                     RecognitionResult& result, const TwoWayOptions& two_way) {
-  TwoWaySearch(scan, options, two_way, result).run(deadline);
+  TwoWaySearch(scan, options, two_way, deadline, result).run();
 }
 
 }  // namespace foresight

@@ -135,7 +135,9 @@ TEST(PoseCheck, a_region_that_is_taken_contradicts) {
     last = check.quality();
   }
   EXPECT_LT(last, -0.9);
-  EXPECT_NEAR(check_of(scan, box_pose()).contradicted, free.explained, 1e-9);
+  // Hopeless by then, so that not all of it need be looked at.
+  const PoseCheck taken = check_of(scan, box_pose());
+  EXPECT_GE(taken.contradicted, 0.9 * taken.total);
 }
 
 TEST(PoseCheck, a_region_with_another_normal_contradicts) {
