@@ -36,9 +36,9 @@ struct Detection {
   double matched = 0.0;                    // alpha, Section V.C
   double coherent = 0.0;                   // beta
   double occluding = 0.0;                  // gamma
-  int rank = 0;                            // place of its hypothesis in the ordered list, from 1
-  std::vector<int> faces;                  // faces of the hypothesis, as they lie at this pose, and
-  std::vector<int> regions;                // the regions they were matched with (Fig. 9's first column counts regions)
+  int rank = 0;                            // place of its start pose (of its hypothesis: the paper's method) in the ordered list, from 1
+  std::vector<int> faces;                  // faces in sight at this pose (of the hypothesis: the paper's method), and
+  std::vector<int> regions;                // the regions that show them
   std::vector<Alternative> ambiguous_with;  // other poses or objects that this view fits equally well; mostly none
 };
 
@@ -51,7 +51,7 @@ struct Statistics {
   long hypotheses = 0;
   long verifications = 0;
   long energy_evaluations = 0;
-  long pose_checks = 0;                    // hypotheses looked at before localization; 0 with the paper's method
+  long pose_checks = 0;                    // poses looked at before localization; 0 with the paper's method
 };
 
 // Time of each stage. Unit: ms.
@@ -73,9 +73,9 @@ struct RecognitionResult {
 
 enum class Loss { lorentzian, tukey, huber, gaussian };      // rho of Section V.B
 enum class PriorSign { minus_log, plus_log_as_printed };     // 1-clique potential; the paper prints +log P(M), eq. (3) wants -log
-enum class Pruning { highest_confidence_first, none };       // none: every match above zero stays active
+enum class Pruning { highest_confidence_first, none };       // of the paper's method; none: every match above zero stays active
 
-// Clique potentials of Section IV.A; lower is better. The potentials of pairs count once for each unordered pair.
+// Clique potentials of Section IV.A, for the paper's method; lower is better. The potentials of pairs count once for each unordered pair.
 // Limit: -10000 to 10000 each.
 struct Potentials {
   double support_on_on = -60.0;
