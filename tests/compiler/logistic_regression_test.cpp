@@ -121,5 +121,17 @@ TEST(LogisticRegression, takes_no_weight_from_a_feature_that_never_changes) {
   EXPECT_GT(constant.weights[0], 0.1);
 }
 
+// With a penalty no data outweigh, the weights are what was expected; with hardly any, what the data say.
+TEST(LogisticRegression, keeps_to_expected_weights_as_far_as_the_ridge_asks) {
+  Eigen::MatrixXd features(6, 1);
+  features << 0.0, 0.2, 0.6, 0.4, 0.8, 1.0;
+  Eigen::VectorXd labels(6);
+  labels << 0.0, 0.0, 0.0, 1.0, 1.0, 1.0;
+  const Eigen::VectorXd expected = Eigen::VectorXd::Constant(1, -7.0);
+  EXPECT_NEAR(fit_logistic(features, labels, 1e6, expected).weights[0], -7.0, 1e-3);
+  EXPECT_NEAR(fit_logistic(features, labels, 1e-6, expected).weights[0],
+              fit_logistic(features, labels, 1e-6).weights[0], 1e-2);
+}
+
 }  // namespace
 }  // namespace foresight
