@@ -19,11 +19,12 @@ struct AcceptanceTrainingOptions {
   std::uint64_t seed = 1;
 };
 
-// Scans, by the sensor's own model, of the object alone, among impostors, and of impostors without it. The impostors
-// are made of the object itself: mirrored, and stretched along each axis by a fifth. They are what an unknown object
-// that resembles it most would be. Right poses are those at which the sensor would see the same as at the true one (95
-// % of the cells within 5 mm); wrong ones are the best that the runtime's hypotheses come to, and displaced true ones.
-// compiled: the model without its acceptance. The runtime's own code gathers the evidence. Deterministic.
+// Scans, by the sensor's own model, of the object alone, among impostors and boxes, and of those without it. The
+// impostors are made of the object itself: mirrored, and stretched along each axis by a fifth. They are what an unknown
+// object that resembles it most would be; random boxes are the flat faces of any size that lie about. Right poses are
+// those at which the sensor would see the same as at the true one (90 % of the cells within 5 mm), wrong ones those
+// with less than 80 %: what the runtime's best looking starts come to, and displaced true poses. compiled: the model
+// without its acceptance. The runtime's own code gathers the evidence. Deterministic.
 [[nodiscard]] AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compiled,
                                                const CompiledDatabase& settings,
                                                const AcceptanceTrainingOptions& options);
