@@ -35,7 +35,7 @@ bool contradicts(const LabelledScan& scan, std::size_t region, const Eigen::Vect
 
 // A cell of the image in which the object is drawn.
 struct DrawnCell {
-  int cell = 0;
+  int cell = 0;        // of the image, -1 beyond it
   double depth = 0.0;  // z of the surface drawn. Unit: mm.
   Eigen::Vector3d normal;
   double facing = 0.0;  // -normal . ray, with a ray of z = 1: turns a difference of depth into one across the surface
@@ -44,9 +44,13 @@ struct DrawnCell {
 
 DrawnCell drawn_cell(const Rendering& drawn, int row, int column, const LabelledScan& scan) {
   const auto at = static_cast<std::size_t>(drawn.cell(row, column));
-  const Eigen::Vector3d ray = scan.camera.ray(row + drawn.first_row, column + drawn.first_column);
+  const int image_row = row + drawn.first_row;
+  const int image_column = column + drawn.first_column;
+  const Eigen::Vector3d ray = scan.camera.ray(image_row, image_column);
+  const bool in_image =
+      image_row >= 0 && image_row < scan.image.rows && image_column >= 0 && image_column < scan.image.columns;
   DrawnCell cell;
-  cell.cell = scan.image.cell(row + drawn.first_row, column + drawn.first_column);
+  cell.cell = in_image ? scan.image.cell(image_row, image_column) : -1;
   cell.depth = drawn.depth[at];
   cell.normal = drawn.normal[static_cast<std::size_t>(drawn.triangle[at])].cast<double>();
   cell.facing = -cell.normal.dot(ray);
@@ -54,9 +58,10 @@ DrawnCell drawn_cell(const Rendering& drawn, int row, int column, const Labelled
   return cell;
 }
 
-enum class Judgement { missing, front, behind, tilted, explained };
+enum class Judgement { beyond, missing, front, behind, tilted, explained };
 
 Judgement judge(const DrawnCell& cell, const LabelledScan& scan, const EvidenceOptions& options) {
+  if (cell.cell < 0) return Judgement::beyond;
   if (!scan.image.valid(cell.cell)) return Judgement::missing;
   const double across = (static_cast<double>(scan.image[cell.cell].z()) - cell.depth) * cell.facing;
   if (across > options.distance) return Judgement::behind;
@@ -78,11 +83,12 @@ class Tally {
     if (explained && region >= 0) ++evidence_.explained_of_region[static_cast<std::size_t>(region)];
     if (!inner) return;
     ++evidence_.drawn;
+    evidence_.beyond += judgement == Judgement::beyond ? 1 : 0;
     evidence_.missing += judgement == Judgement::missing ? 1 : 0;
     evidence_.front += judgement == Judgement::front ? 1 : 0;
     evidence_.behind += judgement == Judgement::behind ? 1 : 0;
     evidence_.tilted += judgement == Judgement::tilted ? 1 : 0;
-    if (judgement == Judgement::missing || judgement == Judgement::front) return;
+    if (judgement == Judgement::beyond || judgement == Judgement::missing || judgement == Judgement::front) return;
     Piece& piece = of_triangle_[static_cast<std::size_t>(triangle)];
     ++piece.judged;
     if (!explained) return;
@@ -148,12 +154,13 @@ LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, co
 
 std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence) {
   const double drawn = std::max(1, evidence.drawn);
-  const double open = std::max(1, evidence.drawn - evidence.front);
+  const int unseen = evidence.front + evidence.beyond;
+  const double open = std::max(1, evidence.drawn - unseen);
   std::array<double, kEvidenceFeatureCount> features{};
   features[kOwnedShare] = evidence.owned / (kDoubt + evidence.explained + evidence.behind + evidence.tilted);
   features[kContradictedShare] = (evidence.behind + evidence.tilted) / open;
   features[kMissingShare] = evidence.missing / open;
-  features[kHiddenShare] = evidence.front / drawn;
+  features[kHiddenShare] = unseen / drawn;
   features[kFoundPieces] = static_cast<double>(evidence.pieces_found) / std::max(1, evidence.pieces);
   features[kAmount] = evidence.owned / (kMuch + evidence.owned);
   features[kOtherSurfaces] =
@@ -174,7 +181,7 @@ double probability_right(const AcceptanceModel& model, const PoseEvidence& evide
 
 PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,
                              const EvidenceOptions& options) {
-  const Rendering drawn = render(model, T_sensor_model, scan.camera);
+  const Rendering drawn = render(model, T_sensor_model, scan.camera, std::max(scan.image.rows, scan.image.columns));
   Tally tally(model.triangles.size(), scan.regions.size());
   for (int row = 0; row < drawn.rows; ++row) {
     for (int column = 0; column < drawn.columns; ++column) {
@@ -184,7 +191,8 @@ PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_mo
       if (cell.cosine <= std::cos(scan.sensor.largest_incidence)) continue;  // the sensor gives no data here
       // Depth changes by this much from one cell to the next.
       const double step = drawn.depth[at] / scan.camera.fx / std::max(cell.cosine, 0.05);
-      tally.add(drawn.triangle[at], judge(cell, scan, options), scan.labels[static_cast<std::size_t>(cell.cell)] - 1,
+      const int region = cell.cell < 0 ? -1 : scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
+      tally.add(drawn.triangle[at], judge(cell, scan, options), region,
                 inner(drawn, row, column, options.distance + 3.0 * step));
     }
   }

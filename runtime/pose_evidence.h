@@ -47,6 +47,7 @@ struct PoseEvidence {
   int tilted = 0;        // data on the surface, but of a region with another normal
   int behind = 0;        // data behind the surface: the sensor saw through it
   int front = 0;         // data before the surface: hidden by something
+  int beyond = 0;        // beyond the image: unseen as well
   int missing = 0;       // no data
   int largest = 0;       // explained cells of the face, or triangle, with most of them
   double owned = 0.0;    // explained cells, each counting the share of its region that the object explains

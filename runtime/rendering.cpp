@@ -87,12 +87,12 @@ void draw(const std::array<const Corner*, 3>& corners, int triangle, const Pinho
 
 }  // namespace
 
-Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const PinholeCamera& camera) {
+Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const PinholeCamera& camera, int beyond) {
   Rendering rendering;
   std::vector<Corner> corners;
   corners.reserve(model.vertices.size());
-  Vector2d low(camera.columns, camera.rows);
-  Vector2d high(-1.0, -1.0);
+  Vector2d low(camera.columns + beyond, camera.rows + beyond);
+  Vector2d high(-1.0 - beyond, -1.0 - beyond);
   for (const Eigen::Vector3f& vertex : model.vertices) {
     Corner corner;
     corner.point = T_sensor_model * vertex.cast<double>();
@@ -102,11 +102,11 @@ Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const P
     high = high.cwiseMax(corner.image);
     corners.push_back(corner);
   }
-  const auto first = [](double value, int cells) {
-    return static_cast<int>(std::ceil(std::clamp<double>(value, 0.0, cells)));
+  const auto first = [beyond](double value, int cells) {
+    return static_cast<int>(std::ceil(std::clamp<double>(value, -beyond, cells + beyond)));
   };
-  const auto last = [](double value, int cells) {
-    return static_cast<int>(std::floor(std::clamp<double>(value, -1.0, cells - 1.0)));
+  const auto last = [beyond](double value, int cells) {
+    return static_cast<int>(std::floor(std::clamp<double>(value, -1.0 - beyond, cells - 1.0 + beyond)));
   };
   rendering.first_column = first(low.x(), camera.columns);
   rendering.first_row = first(low.y(), camera.rows);

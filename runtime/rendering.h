@@ -10,9 +10,9 @@
 
 namespace foresight {
 
-// A window of the image grid. A cell that shows nothing has depth 0.
+// A window of the image grid, and of the grid continued beyond the image. A cell that shows nothing has depth 0.
 struct Rendering {
-  int first_row = 0;  // of the window, in the image
+  int first_row = 0;  // of the window, in the image; negative above it
   int first_column = 0;
   int rows = 0;
   int columns = 0;
@@ -24,8 +24,10 @@ struct Rendering {
 };
 
 // Draws the triangles that face the camera, the nearest one in each cell: a depth buffer. Exact at the cells' centres,
-// where the sensor's rays pass. Empty when any vertex lies behind the camera or all of it outside the image.
-[[nodiscard]] Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const PinholeCamera& camera);
+// where the sensor's rays pass. Empty when any vertex lies behind the camera or all of it outside what is drawn.
+// beyond: so many cells are drawn on each side of the image, too, where the object reaches there. Limit: >= 0.
+[[nodiscard]] Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const PinholeCamera& camera,
+                               int beyond = 0);
 
 // Of the cells that either shows, the share that show the same: both depths are there and differ by no more than this.
 // distance: Unit: mm.

@@ -39,22 +39,22 @@ Samples mirrored(int pairs, int times) {
   return samples;
 }
 
-LogisticFit fit(const Samples& samples, double ridge) { return fit_logistic(samples.features, samples.labels, ridge); }
+LogisticFit fit(const Samples& samples, double ridge) {
+  return fit_logistic(samples.features, samples.labels, Eigen::VectorXd::Constant(samples.features.cols(), ridge));
+}
 
 Eigen::VectorXd probabilities(const Samples& samples, const LogisticFit& fit) {
   const Eigen::ArrayXd sums = (samples.features * fit.weights).array() + fit.bias;
   return (1.0 / (1.0 + (-sums).exp())).matrix();
 }
 
-// The penalised loss with both classes weighing the same in all, written once more.
+// The penalised loss, written once more.
 double loss(const Samples& samples, const Eigen::VectorXd& weights, double bias, double ridge) {
-  const auto n = static_cast<double>(samples.labels.size());
-  const double right = samples.labels.sum();
   double sum = 0.5 * ridge * weights.squaredNorm();
   for (Eigen::Index i = 0; i < samples.labels.size(); ++i) {
     const double margin = samples.features.row(i).dot(weights) + bias;
     const bool is_right = samples.labels[i] > 0.5;
-    sum += 0.5 * n / (is_right ? right : n - right) * std::log1p(std::exp(is_right ? -margin : margin));
+    sum += std::log1p(std::exp(is_right ? -margin : margin));
   }
   return sum;
 }
@@ -94,13 +94,21 @@ TEST(LogisticRegression, more_ridge_gives_smaller_weights) {
   EXPECT_LT(last, 1e-3);
 }
 
-TEST(LogisticRegression, more_samples_of_one_class_do_not_move_the_boundary) {
-  const LogisticFit even = fit(mirrored(40, 1), 0.1);
-  const LogisticFit uneven = fit(mirrored(40, 25), 0.1 * 13.0);  // as much penalty for each sample
-  EXPECT_NEAR(even.bias, 0.0, 1e-6);
-  EXPECT_NEAR(uneven.bias, 0.0, 1e-6);
-  EXPECT_NEAR((uneven.weights - even.weights).norm(), 0.0, 1e-6);
-  EXPECT_GT(even.weights.norm(), 0.1);
+// What is rare is improbable: the mean probability of the samples is the share of the right ones.
+TEST(LogisticRegression, gives_the_samples_as_much_probability_as_right_ones_there_are) {
+  for (const int times : {1, 3, 25}) {
+    const Samples samples = mirrored(40, times);
+    EXPECT_NEAR(probabilities(samples, fit(samples, 0.1)).mean(), 1.0 / (1.0 + times), 1e-6) << times;
+  }
+}
+
+// A weight with a ridge of its own: one that leaves no choice beside one that asks for little.
+TEST(LogisticRegression, holds_one_weight_and_leaves_the_other) {
+  const Samples samples = clusters(60, 60, 2.0);
+  const Eigen::Vector2d expected(5.0, 0.0);
+  const LogisticFit held = fit_logistic(samples.features, samples.labels, Eigen::Vector2d(1e9, 1e-3), expected);
+  EXPECT_NEAR(held.weights[0], 5.0, 1e-5);
+  EXPECT_GT(std::abs(held.weights[1] - fit(samples, 1e-3).weights[1]), 0.1);  // makes up for the other
 }
 
 TEST(LogisticRegression, stays_finite_for_classes_far_apart) {
@@ -128,9 +136,11 @@ TEST(LogisticRegression, keeps_to_expected_weights_as_far_as_the_ridge_asks) {
   Eigen::VectorXd labels(6);
   labels << 0.0, 0.0, 0.0, 1.0, 1.0, 1.0;
   const Eigen::VectorXd expected = Eigen::VectorXd::Constant(1, -7.0);
-  EXPECT_NEAR(fit_logistic(features, labels, 1e6, expected).weights[0], -7.0, 1e-3);
-  EXPECT_NEAR(fit_logistic(features, labels, 1e-6, expected).weights[0],
-              fit_logistic(features, labels, 1e-6).weights[0], 1e-2);
+  const auto weight = [&](double ridge, const Eigen::VectorXd& towards) {
+    return fit_logistic(features, labels, Eigen::VectorXd::Constant(1, ridge), towards).weights[0];
+  };
+  EXPECT_NEAR(weight(1e6, expected), -7.0, 1e-3);
+  EXPECT_NEAR(weight(1e-6, expected), weight(1e-6, {}), 1e-2);
 }
 
 }  // namespace
