@@ -71,7 +71,7 @@ cp "$work/good.stl" block.stl
 built "mended CAD file" "block"
 [ "$(database)" = "$second" ] || fail "mended CAD file: the database is another"
 
-sed -i 's/--spacing 15/--spacing 18/' CMakeLists.txt
+sed -i 's/--spacing 20/--spacing 22/' CMakeLists.txt
 built "other options" "block wedge link json program"
 
 rm "$work/build/parts.parts/wedge.fdb" "$work/build/parts.fdb"

@@ -58,8 +58,8 @@ for file in "$share"/man/man1/foresight{,c}.1.gz "$share"/bash-completion/comple
   [ -s "$file" ] || fail "${file#"$place"} is not there"
 done
 cd "$work"
-"$bin/foresightc" compile "$root/tests/consumer/wedge.off" --sensor "$share/foresight/models/sensors/paper.textproto" --views 20 --spacing 15 -o wedge.fdb
-"$bin/foresightc" simulate "$root/tests/consumer/wedge.off" --sensor "$share/foresight/models/sensors/paper.textproto" --scenes 3 --seed 1 -o scans
+"$bin/foresightc" compile "$root/tests/consumer/wedge.off" --sensor "$share/foresight/models/sensors/paper.textproto" --views 20 --spacing 20 -o wedge.fdb
+"$bin/foresightc" simulate "$root/tests/consumer/wedge.off" --sensor "$share/foresight/models/sensors/paper.textproto" --scenes 1 --seed 1 -o scans
 "$bin/foresight" recognize wedge.fdb scans/*.pcd >"$work/log" || fail "foresight recognizes no wedge"
 grep -q wedge "$work/log" || fail "foresight names no wedge"
 if command -v pkg-config >/dev/null; then

@@ -34,7 +34,7 @@ if command -v pkg-config >/dev/null; then
   export PKG_CONFIG_PATH
   version=$(pkg-config --modversion foresight)
   "$prefix/bin/foresightc" compile "$root/tests/consumer/wedge.off" --sensor "$root/tests/consumer/coarse.textproto" \
-    --views 20 --spacing 15 -o "$work/wedge.fdb"
+    --views 20 --spacing 20 -o "$work/wedge.fdb"
   for static in "" --static; do
     # shellcheck disable=SC2046,SC2086
     "$cxx" -std=c++17 -Wall -Wextra -Werror "$work/load.cpp" -o "$work/load" $(pkg-config $static --cflags --libs foresight) >"$work/log" 2>&1 ||
@@ -84,7 +84,7 @@ printf '#!/bin/sh\nexit 126\n' >"$prefix/bin/foresightc"
 chmod +x "$prefix/bin/foresightc"
 printf '%s\n' 'set(CMAKE_SYSTEM_NAME Linux)' 'set(CMAKE_SYSTEM_PROCESSOR other)' >"$work/toolchain.cmake"
 cross=(-DCMAKE_TOOLCHAIN_FILE="$work/toolchain.cmake")
-project "$find" 'foresight_add_database(NAME parts MODELS wedge.off SENSOR coarse.textproto OPTIONS --views 20 --spacing 15)'
+project "$find" 'foresight_add_database(NAME parts MODELS wedge.off SENSOR coarse.textproto OPTIONS --views 20 --spacing 20)'
 if PATH=/usr/bin:/bin command -v foresightc >/dev/null; then
   echo "foresightc is installed on this machine: a cross build that lacks it is not tested"
 else
