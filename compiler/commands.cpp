@@ -74,10 +74,15 @@ std::vector<CadModel> read_all(const std::vector<std::string>& files, const std:
   return models;
 }
 
+// As Make and Ninja read names, and as gcc -MD writes them: backslashes mean themselves but before a blank.
 std::string make_escaped(const std::string& path) {
   std::string escaped;
   for (const char c : path) {
-    if (c == ' ' || c == '#' || c == '\\') escaped += '\\';
+    if (c == ' ' || c == '\t') {
+      const std::size_t last = escaped.find_last_not_of('\\') + 1;
+      escaped.append(escaped.size() - last, '\\');
+    }
+    if (c == ' ' || c == '\t' || c == '#' || c == ':') escaped += '\\';
     if (c == '$') escaped += '$';
     escaped += c;
   }
@@ -85,7 +90,7 @@ std::string make_escaped(const std::string& path) {
 }
 
 void write_depfile(const CompileCommand& command) {
-  std::string text = make_escaped(command.output) + ":";
+  std::string text = make_escaped(command.depfile_target.empty() ? command.output : command.depfile_target) + ":";
   for (const std::string& file : command.cad_files) text += " " + make_escaped(file);
   if (!command.sensor_file.empty()) text += " " + make_escaped(command.sensor_file);
   write_file_atomically(command.depfile, text + "\n");

@@ -17,6 +17,7 @@ struct CompileCommand {
   std::string sensor_file;            // empty: the paper's sensor
   std::string unit = "mm";
   std::string depfile;                // empty: none
+  std::string depfile_target;         // what it says is made; empty: the output
   std::string progress = "auto";
   int jobs = 0;                       // 0: all cores
   CompileOptions options;

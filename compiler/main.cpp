@@ -26,7 +26,8 @@ CLI::App* add_compile(CLI::App& app, CompileCommand& c) {
   command->add_option("--bins", c.options.density.bins, "Bins of the densities")->check(CLI::Range(2, 1000))->capture_default_str();
   command->add_option("--kernel", c.options.density.kernel, "Kernel of the densities in bins, 0 = raw histograms")->check(number_between(0.0, 10.0))->capture_default_str();
   command->add_option("--spacing", c.options.surface.spacing, "Spacing of the surface template, mm")->check(number_between(0.1, 1000.0))->capture_default_str();
-  command->add_option("--depfile", c.depfile, "Write a Make dependency file");
+  CLI::Option* depfile = command->add_option("--depfile", c.depfile, "Write a Make dependency file");
+  command->add_option("--depfile-target", c.depfile_target, "What the dependency file says is made; the output when not given")->needs(depfile);
   add_progress_option(*command, c.progress);
   return command;
 }

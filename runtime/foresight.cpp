@@ -1,6 +1,7 @@
 #include "runtime/foresight.h"
 
 #include <cmath>
+#include <string_view>
 
 #include "common/errors.h"
 #include "runtime/database.h"
@@ -13,7 +14,8 @@ bool side_in_limits(int cells) { return cells >= kSmallestImageSide && cells <= 
 
 RangeImage copy_image(const RangeImageView& view) {
   if (view.xyz == nullptr || !side_in_limits(view.rows) || !side_in_limits(view.columns)) {
-    throw InputError("range image", "no data, or not between 32 x 32 and 4096 x 4096 cells", "give a whole organized range image");
+    throw InputError("range image", "no data, or not between 32 x 32 and 4096 x 4096 cells",
+                     "give a whole organized range image");
   }
   RangeImage image(view.rows, view.columns);
   for (int cell = 0; cell < image.size(); ++cell) {
@@ -38,11 +40,20 @@ Recognizer::Recognizer(const std::string& database_file, const RecognizeOptions&
   check_method(options, impl_->database, database_file);
 }
 
+Recognizer::Recognizer(const DatabaseBytes& database, const RecognizeOptions& options) {
+  check(options);
+  const std::string name = "(memory)";
+  const std::string_view bytes(static_cast<const char*>(database.data), database.data == nullptr ? 0 : database.size);
+  impl_ = std::make_unique<Impl>(Impl{Database(decode_database(bytes, name)), options});
+  check_method(options, impl_->database, name);
+}
+
 Recognizer::~Recognizer() = default;
 Recognizer::Recognizer(Recognizer&&) noexcept = default;
 Recognizer& Recognizer::operator=(Recognizer&&) noexcept = default;
 
-RecognitionResult Recognizer::recognize(const RangeImageView& view, std::optional<std::chrono::milliseconds> deadline) const {
+RecognitionResult Recognizer::recognize(const RangeImageView& view,
+                                        std::optional<std::chrono::milliseconds> deadline) const {
   const auto start = std::chrono::steady_clock::now();
   const RangeImage image = copy_image(view);
   const std::optional<PinholeCamera> camera = fit_camera(image);

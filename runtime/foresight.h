@@ -5,6 +5,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -101,11 +102,19 @@ struct RecognizeOptions {
   int most_verifications = 0;           // stop after this many, 0 = no limit. Limit: >= 0.
 };
 
+// The bytes of a database file, wherever they come from: for programs without a file system.
+struct DatabaseBytes {
+  const void* data = nullptr;
+  std::size_t size = 0;
+};
+
 // Recognizes the objects of one database. Const methods may be called from several threads.
 class Recognizer {
  public:
   // Throws DatabaseError or InputError (common/errors.h) when the file cannot be used, UsageError for options outside their limits.
   explicit Recognizer(const std::string& database_file, const RecognizeOptions& options = {});
+  // Likewise; the bytes may go once it returns. Errors name the database `(memory)`.
+  explicit Recognizer(const DatabaseBytes& database, const RecognizeOptions& options = {});
   ~Recognizer();
   Recognizer(Recognizer&&) noexcept;
   Recognizer& operator=(Recognizer&&) noexcept;

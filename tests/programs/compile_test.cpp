@@ -137,26 +137,52 @@ TEST(CompileProgram, depfile_names_every_input) {
   EXPECT_EQ(file_content(depfile), workshop().file("dep.db") + ": " + castle() + " " + stick() + " " + sensor + "\n");
 }
 
-// make itself reads the file, with every character in the names that means something to it.
-TEST(CompileProgram, depfile_is_what_make_reads) {
-  if (std::system("make --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "make is not installed";
-  const std::string folder = workshop().file("make");
-  const std::string name = "a b#c$d.off";
+// A solid of few faces and a sensor of few cells: compiled in half a second.
+const std::string kWedge = project_file("tests/consumer/wedge.off");
+const std::string kCoarseSensor = project_file("tests/consumer/coarse.textproto");
+
+TEST(CompileProgram, depfile_names_another_target_when_told) {
+  const std::string depfile = workshop().file("stamp.d");
+  (void)compiled("stamped.db",
+                 {kWedge, "--sensor", kCoarseSensor, "--depfile", depfile, "--depfile-target", "a stamp"});
+  EXPECT_EQ(file_content(depfile), "a\\ stamp: " + kWedge + " " + kCoarseSensor + "\n");
+}
+
+// The build tools themselves read the file, with every character in the names that means something to them.
+void expect_made_when_the_cad_changes(const std::string& tool, const std::string& rules_name,
+                                      const std::string& rules) {
+  if (std::system((tool + " --version >/dev/null 2>&1").c_str()) != 0) GTEST_SKIP() << tool << " is not installed";
+  const std::string folder = workshop().file(tool);
+  const std::string name = "a b\\ c\\d#e$f:g.off";
   fs::create_directories(folder);
-  fs::copy_file(stick(), folder + "/" + name);
+  fs::copy_file(kWedge, folder + "/" + name);
   const std::string cd = "cd " + shell_word(folder) + " && ";
-  const std::string compile =
-      cd + shell_word(FORESIGHTC_PROGRAM) + " compile " + shell_word(name) + " -o out.db --views 20 --depfile out.d";
+  const std::string compile = cd + shell_word(FORESIGHTC_PROGRAM) + " compile " + shell_word(name) + " --sensor " +
+                              shell_word(kCoarseSensor) + " -o out.db --views 20 --depfile out.d";
   ASSERT_EQ(std::system(compile.c_str()), 0);
-  write_content(folder + "/Makefile", "out.db: ; @echo made >> log\ninclude out.d\n");
-  const std::string make = cd + "make -s out.db >/dev/null 2>err";
+  write_content(folder + "/" + rules_name, rules);
+  const std::string make = cd + tool + " out.db >out 2>&1";
   make_old(folder + "/" + name);
-  EXPECT_EQ(std::system(make.c_str()), 0) << file_content(folder + "/err");
-  EXPECT_FALSE(fs::exists(folder + "/log")) << "made although nothing changed";
+  EXPECT_EQ(std::system(make.c_str()), 0) << file_content(folder + "/out");
+  const bool made_at_first = fs::exists(folder + "/log");  // Ninja makes what it has not made before
+  EXPECT_EQ(made_at_first, tool == "ninja") << "made although nothing changed";
+  fs::remove(folder + "/log");
+  EXPECT_EQ(std::system(make.c_str()), 0) << file_content(folder + "/out");
+  EXPECT_FALSE(fs::exists(folder + "/log")) << "made again although nothing changed";
   make_old(folder + "/out.db");
   fs::last_write_time(folder + "/" + name, fs::file_time_type::clock::now());
-  EXPECT_EQ(std::system(make.c_str()), 0) << file_content(folder + "/err");
+  EXPECT_EQ(std::system(make.c_str()), 0) << file_content(folder + "/out");
   EXPECT_EQ(file_content(folder + "/log"), "made\n") << "not made although the CAD file changed";
+}
+
+TEST(CompileProgram, depfile_is_what_make_reads) {
+  expect_made_when_the_cad_changes("make", "Makefile", "out.db: ; @echo made >> log\ninclude out.d\n");
+}
+
+TEST(CompileProgram, depfile_is_what_ninja_reads) {
+  expect_made_when_the_cad_changes(
+      "ninja", "build.ninja",
+      "rule made\n  command = echo made >> log && touch out.db\n  depfile = out.d\nbuild out.db: made\n");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ trap 'rm -rf "$scratch"' EXIT
 
 tar -C "$root" --exclude=./.git --exclude=./build --exclude='./build-*' --exclude=./demo-output -cf - . | tar -C "$scratch" -xf -
 cd "$scratch"
+mkdir build && ln -s "$build" build/release # where a reader has it
 export PATH=$build/compiler:$build/runtime:$build/benchmarks:$PATH
 
 blocks=0

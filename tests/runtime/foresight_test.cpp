@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <memory>
 #include <thread>
 
+#include "common/atomic_file.h"
 #include "common/errors.h"
 #include "compiler/database_writer.h"
 #include "runtime/recognize.h"
@@ -170,6 +172,35 @@ TEST(Recognizer, refuses_files_and_options_it_cannot_use) {
   RecognizeOptions wrong;
   wrong.smallest_matched = 7.0;
   EXPECT_THROW(Recognizer(client.file, wrong), UsageError);
+}
+
+TEST(Recognizer, loads_from_memory_what_it_loads_from_a_file) {
+  const Client client;
+  auto bytes = std::make_unique<std::string>("x" + read_whole_file(client.file));  // at an odd address, for once
+  const Recognizer embedded(DatabaseBytes{bytes->data() + 1, bytes->size() - 1});
+  bytes.reset();
+  expect_same(embedded.recognize(client.view()), Recognizer(client.file).recognize(client.view()));
+}
+
+TEST(Recognizer, refuses_bytes_that_are_no_whole_database) {
+  const Client client;
+  const std::string bytes = read_whole_file(client.file);
+  const auto fault = [](const DatabaseBytes& given) {
+    try {
+      const Recognizer recognizer(given);
+    } catch (const DatabaseError& error) {
+      EXPECT_EQ(error.file(), "(memory)");
+      return error.fault();
+    }
+    return DatabaseFault::incompatible;
+  };
+  EXPECT_EQ(fault({}), DatabaseFault::wrong_kind);
+  EXPECT_EQ(fault({nullptr, 100}), DatabaseFault::wrong_kind);
+  EXPECT_EQ(fault({bytes.data(), 0}), DatabaseFault::wrong_kind);
+  EXPECT_EQ(fault({bytes.data(), bytes.size() - 1}), DatabaseFault::truncated);
+  RecognizeOptions wrong;
+  wrong.smallest_matched = 7.0;
+  EXPECT_THROW(Recognizer(DatabaseBytes{bytes.data(), bytes.size()}, wrong), UsageError);
 }
 
 TEST(Version, has_three_numbers) {
