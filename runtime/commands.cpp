@@ -133,6 +133,7 @@ int run_localize(const LocalizeCommand& command) {
   result.statistics.verifications = 1;
   result.statistics.energy_evaluations = refined.localization.energy_evaluations;
   result.detections.push_back(to_detection(model, refined));
+  add_covariance(scan.image, scan.camera, database.content().sensor, model, result.detections.back());
   std::cout << result_json(command.scan, result, scan.read_milliseconds) << "\n";
   return refined.verification.accepted ? kExitDone : kExitNothingFound;
 }

@@ -10,6 +10,13 @@
 #include <string>
 #include <vector>
 
+// The version of this interface, the project's own; runtime/README.md has the rules.
+#define FORESIGHT_API_VERSION_MAJOR 0
+#define FORESIGHT_API_VERSION_MINOR 1
+#define FORESIGHT_API_VERSION_PATCH 0
+#define FORESIGHT_API_VERSION \
+  (FORESIGHT_API_VERSION_MAJOR * 10000 + FORESIGHT_API_VERSION_MINOR * 100 + FORESIGHT_API_VERSION_PATCH)
+
 namespace foresight {
 
 class Database;
@@ -40,6 +47,13 @@ struct Detection {
   std::vector<int> faces;                  // faces in sight at this pose (of the hypothesis: the paper's method), and
   std::vector<int> regions;                // the regions that show them
   std::vector<Alternative> ambiguous_with;  // other poses or objects that this view fits equally well; mostly none
+  std::array<double, 4> quaternion{1.0, 0.0, 0.0, 0.0};  // the pose's rotation as w, x, y, z: unit, w >= 0
+  // Mean square error of the pose, 6 x 6, row-major, positive definite. The error d = x, y, z (mm), w = rotation vector
+  // (rad), both along the sensor's axes: the true pose is exp(w) R, t + d, so that the rotation is about the model's
+  // origin (as in ROS's PoseWithCovariance). Of the sensor's noise alone: runtime/pose_covariance.h.
+  std::array<double, 36> covariance{};
+  std::array<double, 3> box_centre{};  // of the CAD model's bounding box, along the model's axes. Model frame, mm.
+  std::array<double, 3> box_size{};    // Unit: mm.
 };
 
 // Columns of the paper's Fig. 9, and the count of eq. (9) evaluations (Table I's cost).
@@ -101,11 +115,19 @@ struct RecognizeOptions {
   int most_verifications = 0;           // stop after this many, 0 = no limit. Limit: >= 0.
 };
 
-// Recognizes the objects of one database. Const methods may be called from several threads.
+// A database for several recognizers: immutable, and shared by as many threads as want it. Throws DatabaseError or
+// InputError (common/errors.h) when the file cannot be used.
+[[nodiscard]] std::shared_ptr<const Database> load_shared_database(const std::string& file);
+
+// Recognizes the objects of one database. Const methods may be called from several threads; one for each thread, all of
+// a shared database, is what later versions stay fastest with.
 class Recognizer {
  public:
   // Throws DatabaseError or InputError (common/errors.h) when the file cannot be used, UsageError for options outside their limits.
   explicit Recognizer(const std::string& database_file, const RecognizeOptions& options = {});
+  // Throws DatabaseError when the database lacks what the method of the options needs, UsageError for options outside
+  // their limits. REQUIRES: database is not null.
+  explicit Recognizer(std::shared_ptr<const Database> database, const RecognizeOptions& options = {});
   ~Recognizer();
   Recognizer(Recognizer&&) noexcept;
   Recognizer& operator=(Recognizer&&) noexcept;

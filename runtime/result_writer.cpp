@@ -20,6 +20,12 @@ Json pose_json(const std::array<double, 16>& T) {
   return rows;
 }
 
+Json covariance_json(const std::array<double, 36>& covariance) {
+  Json rows = Json::array();
+  for (auto row = covariance.begin(); row != covariance.end(); row += 6) rows.push_back(std::vector(row, row + 6));
+  return rows;
+}
+
 Json alternative_json(const Alternative& alternative) {
   Json json;
   json["object"] = alternative.object;
@@ -41,6 +47,10 @@ Json detection_json(const Detection& detection) {
   json["regions"] = detection.regions;
   json["ambiguous_with"] = Json::array();
   for (const Alternative& other : detection.ambiguous_with) json["ambiguous_with"].push_back(alternative_json(other));
+  json["quaternion"] = detection.quaternion;
+  json["covariance"] = covariance_json(detection.covariance);
+  json["box"]["centre"] = detection.box_centre;
+  json["box"]["size"] = detection.box_size;
   return json;
 }
 
