@@ -109,14 +109,6 @@ std::array<double, 4> canonical_quaternion(const Eigen::Matrix3d& rotation) {
   return numbers;
 }
 
-void add_box(const CompiledModel& model, Detection& detection) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3f& vertex : model.vertices) box.extend(vertex.cast<double>());
-  if (box.isEmpty()) return;
-  Eigen::Vector3d::Map(detection.box_centre.data()) = box.center();
-  Eigen::Vector3d::Map(detection.box_size.data()) = box.sizes();
-}
-
 }  // namespace
 
 RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
@@ -147,6 +139,16 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   return result;
 }
 
+BoundingBox bounding_box(const CompiledModel& model) {
+  Eigen::AlignedBox3d extent;
+  for (const Eigen::Vector3f& vertex : model.vertices) extent.extend(vertex.cast<double>());
+  BoundingBox box;
+  if (extent.isEmpty()) return box;
+  Eigen::Vector3d::Map(box.centre.data()) = extent.center();
+  Eigen::Vector3d::Map(box.size.data()) = extent.sizes();
+  return box;
+}
+
 Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
   Detection detection;
   detection.object = model.name;
@@ -162,7 +164,9 @@ Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
   detection.occluding = refined.verification.occluding;
   detection.score = detection.matched;
   detection.quaternion = canonical_quaternion(pose.rotation);
-  add_box(model, detection);
+  const BoundingBox box = bounding_box(model);
+  detection.box_centre = box.centre;
+  detection.box_size = box.size;
   return detection;
 }
 

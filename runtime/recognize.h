@@ -1,6 +1,7 @@
 // The runtime's order of stages.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <optional>
 
@@ -36,6 +37,13 @@ struct RefinedPose {
   Localization localization;
   Verification verification;
 };
+// Of the CAD model's vertices, along the model's axes. Unit: mm.
+struct BoundingBox {
+  std::array<double, 3> centre{};
+  std::array<double, 3> size{};
+};
+[[nodiscard]] BoundingBox bounding_box(const CompiledModel& model);
+
 // A refined pose as a detection: pose, box, fractions and score; no rank, faces, regions or covariance yet.
 [[nodiscard]] Detection to_detection(const CompiledModel& model, const RefinedPose& refined);
 
