@@ -331,6 +331,54 @@ TEST(RecognizeProgram, says_when_its_output_cannot_be_written) {
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 3);
 }
 
+// A BOP scene folder of the stick's scan under two numbers, each with its own depth_scale.
+std::string bop_scene() {
+  const std::string scene = workshop().file("test/000048");
+  std::filesystem::create_directories(scene + "/depth");
+  const RangeImage image = read_scan(stick_scene().scan).image;
+  const PinholeCamera camera = fit_camera(image).value();
+  Json cameras;
+  for (const auto& [number, scale] : {std::pair(2, 0.05), std::pair(15, 0.1)}) {
+    const std::string digits = std::to_string(number);
+    write_depth_png(scene + "/depth/" + std::string(6 - digits.size(), '0') + digits + ".png", image, scale);
+    cameras[digits] = {{"cam_K", {camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1}}, {"depth_scale", scale}};
+  }
+  write_content(scene + "/scene_camera.json", cameras.dump());
+  return scene;
+}
+
+TEST(RecognizeProgram, takes_a_bop_scene_folder_for_all_its_images) {
+  const std::string scene = bop_scene();
+  const Outcome outcome = foresight({"recognize", two_objects(), scene, stick_scene().scan, "--format", "json"});
+  expect_code(outcome, 0);
+  const std::vector<std::string> lines = lines_of(outcome.out);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(Json::parse(lines[0])["scan"], scene + "/depth/000002.png");
+  EXPECT_EQ(Json::parse(lines[1])["scan"], scene + "/depth/000015.png");
+  for (const std::string& line : lines) {
+    const Json json = Json::parse(line);
+    ASSERT_EQ(json["detections"].size(), 1U);
+    EXPECT_LT(pose_distance(stick(), json["detections"][0]["pose"], stick_scene().objects[0].T_sensor_model), 5.0);
+  }
+}
+
+// BOP toolkit, bop_toolkit_lib/inout.py, load_bop_results: seven columns, R and t split at blanks, one time an image.
+TEST(RecognizeProgram, writes_bop_results_of_a_scene_folder) {
+  const std::string scene = bop_scene();
+  const Outcome outcome = foresight({"recognize", two_objects(), scene + "/", "--format", "bop-csv"});
+  expect_code(outcome, 0);
+  const std::vector<std::string> lines = lines_of(outcome.out);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0], "scene_id,im_id,obj_id,score,R,t,time");
+  EXPECT_TRUE(lines[1].starts_with("48,2,2,")) << lines[1];  // the stick is the database's second
+  EXPECT_TRUE(lines[2].starts_with("48,15,2,")) << lines[2];
+}
+
+TEST(RecognizeProgram, refuses_a_camera_for_a_scene_folder) {
+  const Outcome outcome = foresight({"recognize", two_objects(), bop_scene(), "--camera", "camera.json"});
+  expect_refused(outcome, 2, "foresight", "--camera", "scene_camera.json in the folder");
+}
+
 // api_example.cpp and api_example_c.c: users of the library, who know its public headers alone.
 class ApiExample : public ::testing::TestWithParam<const char*> {};
 

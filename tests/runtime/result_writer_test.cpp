@@ -188,6 +188,26 @@ TEST(BopCsv, has_seven_columns_and_rows_that_read_back) {
   }
 }
 
+TEST(BopCsv, takes_numbers_from_the_names_of_bops_objects) {
+  RecognitionResult result;
+  result.detections.resize(1);
+  const auto id = [&](const std::string& object, const std::vector<std::string>& names) {
+    result.detections[0].object = object;
+    const std::string row = bop_csv_rows("x", result, names, 0.0);
+    return row.substr(4, row.find(',', 4) - 4);
+  };
+  EXPECT_EQ(id("obj_000005", {"obj_000030", "obj_000005"}), "5");
+  EXPECT_EQ(id("obj_000030", {"obj_000030", "obj_000005"}), "30");
+  // One rule for all objects of a database: else two could get the same number.
+  EXPECT_EQ(id("obj_000002", {"castle", "tee", "obj_000002"}), "3");
+  EXPECT_EQ(id("obj_2", {"obj_2", "obj_000002"}), "1");
+  EXPECT_EQ(id("obj_-7", {"obj_-7"}), "1");
+  EXPECT_EQ(id("obj_", {"obj_"}), "1");
+  EXPECT_EQ(id("obj_7b", {"obj_7b"}), "1");
+  EXPECT_EQ(id("obj_99999999999999999999", {"obj_99999999999999999999"}), "1");
+  EXPECT_EQ(id("other", {"obj_000030"}), "0");
+}
+
 TEST(BopCsv, takes_numbers_from_file_and_folder_names) {
   RecognitionResult result;
   result.detections.resize(1);
