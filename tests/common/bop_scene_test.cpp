@@ -111,7 +111,7 @@ TEST(BopScene, refuses_cameras_that_cannot_be_used) {
   refused("{\"3\":", "is not JSON");
   refused("{}", "holds no cameras");
   refused("[1]", "holds no cameras");
-  refused("{\"x\":" + entry(700, 1) + "}", "entry \"x\" is no image number");
+  refused("{\"x\":" + entry(700, 1) + "}", "entry 'x' is no image number");
   refused("{\"-3\":" + entry(700, 1) + "}", "is no image number");
   refused("{\"3\":7}", "is no image number with a camera");
   refused("{\"3\":" + entry(700, 1) + ",\"03\":" + entry(700, 1) + "}", "two entries are for image 3");

@@ -413,7 +413,7 @@ TEST_P(ApiExample, hears_of_a_bad_database) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Languages, ApiExample, ::testing::Values(API_EXAMPLE_PROGRAM, API_EXAMPLE_C_PROGRAM),
-                         [](const auto& info) { return info.index == 0 ? "cpp" : "c"; });
+                         [](const auto& language) { return language.index == 0 ? "cpp" : "c"; });
 
 }  // namespace
 }  // namespace foresight::test
