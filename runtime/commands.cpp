@@ -135,8 +135,8 @@ int run_recognize(const RecognizeCommand& command) {
   const std::vector<std::string> names = names_of(database);
   bool any_found = false;
   bool all_complete = true;
-  // The bar would fight with results printed to the same terminal, so it shows only where they go elsewhere.
   const std::vector<ListedScan> scans = list_scans(command);
+  // The bar would fight with results printed to the same terminal, so it shows only where they go elsewhere.
   Progress progress(scans.size() > 1 ? command.progress : "none", "recognize", static_cast<int>(scans.size()));
   for (const auto& [file, options] : scans) {
     const ReadyScan scan = read_ready_scan(file, options);
