@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -93,8 +94,9 @@ class DrawnObject {
     if (drawn < 0 || cell < 0 || !image_.valid(cell)) return std::nullopt;
     PoseConstraint plane;
     plane.direction = normal(drawn).cast<double>().normalized();
-    const double facing = -plane.direction.dot(ray(row, column));
-    if (facing <= least_cosine_ * ray(row, column).norm()) return std::nullopt;
+    const Eigen::Vector3d sight = ray(row, column);
+    const double facing = -plane.direction.dot(sight);
+    if (facing <= least_cosine_ * sight.norm()) return std::nullopt;
     plane.point = image_[cell].cast<double>();
     plane.offset = (depth(row, column) - plane.point.z()) * facing;
     if (std::abs(plane.offset) > distance_) return std::nullopt;
@@ -106,14 +108,17 @@ class DrawnObject {
 
   // Whether the surface goes on around the cell, without an edge.
   [[nodiscard]] bool inner(int row, int column) const {
-    const Eigen::Vector3f& here = normal(triangle(row, column));
-    const double cosine = -here.cast<double>().dot(ray(row, column)) / ray(row, column).norm();
-    const double step = distance_ + 3.0 * depth(row, column) / camera_.fx / std::max(cosine, 0.05);
+    const int drawn = triangle(row, column);
+    const Eigen::Vector3f& here = normal(drawn);
+    const double depth_here = depth(row, column);
+    const Eigen::Vector3d sight = ray(row, column);
+    const double cosine = -here.cast<double>().dot(sight) / sight.norm();
+    const double step = distance_ + 3.0 * depth_here / camera_.fx / std::max(cosine, 0.05);
     for (int r = row - 1; r <= row + 1; ++r) {
       for (int c = column - 1; c <= column + 1; ++c) {
         const int other = triangle(r, c);
-        if (other < 0 || here.dot(normal(other)) < kEdgeCosine) return false;
-        if (std::abs(depth(r, c) - depth(row, column)) > step) return false;
+        if (other < 0 || (other != drawn && here.dot(normal(other)) < kEdgeCosine)) return false;
+        if (std::abs(depth(r, c) - depth_here) > step) return false;
       }
     }
     return true;
@@ -182,45 +187,47 @@ struct Information {
 
 // Constraints that stand together. Their errors have the covariance D + b b^T, with D = diag(sigma^2) and b = shared;
 // its inverse is W - W b (W b)^T / (1 + b^T W b), with W the inverse of D.
-Information group_information(const PoseConstraint* first, const PoseConstraint* last, const Eigen::Vector3d& about) {
-  Information sum;
-  Vector6 shared_a = Vector6::Zero();
-  double shared_r = 0.0;
-  double shared_b = 1.0;
-  for (; first != last; ++first) {
+class Group {
+ public:
+  void add(const PoseConstraint& constraint, const Eigen::Vector3d& about) {
     Vector6 a;
-    a << first->direction, (first->point - about).cross(first->direction);
-    const double weight = 1.0 / (first->sigma * first->sigma);
-    sum.H += weight * a * a.transpose();
-    sum.g += weight * first->offset * a;
-    sum.squares += weight * first->offset * first->offset;
-    ++sum.count;
-    shared_a += weight * first->shared * a;
-    shared_r += weight * first->shared * first->offset;
-    shared_b += weight * first->shared * first->shared;
+    a << constraint.direction, (constraint.point - about).cross(constraint.direction);
+    const double weight = 1.0 / (constraint.sigma * constraint.sigma);
+    const double shared = weight * constraint.shared;
+    own_.H.noalias() += (weight * a) * a.transpose();
+    own_.g += weight * constraint.offset * a;
+    own_.squares += weight * constraint.offset * constraint.offset;
+    ++own_.count;
+    shared_a_ += shared * a;
+    shared_r_ += shared * constraint.offset;
+    shared_b_ += shared * constraint.shared;
   }
-  sum.H -= shared_a * shared_a.transpose() / shared_b;
-  sum.g -= shared_a * shared_r / shared_b;
-  sum.squares -= shared_r * shared_r / shared_b;
-  return sum;
-}
+
+  [[nodiscard]] Information information() const {
+    Information sum = own_;
+    sum.H -= shared_a_ * shared_a_.transpose() / shared_b_;
+    sum.g -= shared_a_ * shared_r_ / shared_b_;
+    sum.squares -= shared_r_ * shared_r_ / shared_b_;
+    return sum;
+  }
+
+ private:
+  Information own_;
+  Vector6 shared_a_ = Vector6::Zero();
+  double shared_r_ = 0.0;
+  double shared_b_ = 1.0;
+};
 
 struct AllInformation {
   Information planes;
   Information outline;
 };
 
-AllInformation gather(std::vector<PoseConstraint> constraints, const Eigen::Vector3d& about) {
-  std::stable_sort(constraints.begin(), constraints.end(),
-                   [](const PoseConstraint& a, const PoseConstraint& b) { return a.group < b.group; });
+AllInformation gather(const std::vector<PoseConstraint>& constraints, const Eigen::Vector3d& about) {
+  std::map<int, Group> groups;
+  for (const PoseConstraint& constraint : constraints) groups[constraint.group].add(constraint, about);
   AllInformation all;
-  const PoseConstraint* const end = constraints.data() + constraints.size();
-  for (const PoseConstraint* first = constraints.data(); first != end;) {
-    const PoseConstraint* last = first;
-    while (last != end && last->group == first->group) ++last;
-    (first->group < 0 ? all.outline : all.planes).add(group_information(first, last, about));
-    first = last;
-  }
+  for (const auto& [number, group] : groups) (number < 0 ? all.outline : all.planes).add(group.information());
   return all;
 }
 
