@@ -31,6 +31,7 @@ struct Experiment {
 [[nodiscard]] Experiment add_constraints(CLI::App& app);     // Sections III and VI.A
 [[nodiscard]] Experiment add_potentials(CLI::App& app);      // Section IV
 [[nodiscard]] Experiment add_sensor_effect(CLI::App& app);   // Section III, what the sensor model takes into account
+[[nodiscard]] Experiment add_covariance(CLI::App& app);      // of reported poses
 
 // Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
 void add_common_options(CLI::App& command, ExperimentOptions& options, int n);

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   const std::vector<foresight::Experiment> experiments = {foresight::add_synthetic(app),       //
                                                           foresight::add_scanner(app),         //
                                                           foresight::add_clutter(app),         //
+                                                          foresight::add_covariance(app),      //
                                                           foresight::add_localization(app),    //
                                                           foresight::add_single_surface(app),  //
                                                           foresight::add_twins(app),           //

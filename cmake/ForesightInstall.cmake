@@ -25,7 +25,7 @@ target_include_directories(foresight_archive INTERFACE $<INSTALL_INTERFACE:${CMA
 target_link_libraries(foresight_archive INTERFACE
   $<INSTALL_INTERFACE:$<LINK_ONLY:protobuf::libprotobuf-lite>> $<INSTALL_INTERFACE:$<LINK_ONLY:Foresight::lz4>>)
 install(TARGETS foresight_archive EXPORT ForesightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-install(FILES runtime/foresight.h common/errors.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/foresight COMPONENT development)
+install(FILES runtime/foresight.h runtime/foresight_c.h common/errors.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/foresight COMPONENT development)
 
 # find_package(Foresight)
 install(EXPORT ForesightTargets NAMESPACE Foresight:: DESTINATION ${package_dir} COMPONENT development)

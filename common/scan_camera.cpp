@@ -58,20 +58,6 @@ void read_matrix(const std::string& file, const Json& matrix, PinholeCamera& cam
   camera.cy = k(5);
 }
 
-// The last whole number in a file's name without its extension.
-std::optional<std::uint64_t> image_number(const std::string& scan_file) {
-  std::string name = scan_file.substr(scan_file.rfind('/') + 1);
-  name = name.substr(0, name.rfind('.'));
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  std::size_t end = name.size();
-  while (end > 0 && !digit(name[end - 1])) --end;
-  std::size_t start = end;
-  while (start > 0 && digit(name[start - 1])) --start;
-  std::uint64_t value = 0;
-  if (!scan_format::parse(std::string_view(name).substr(start, end - start), value)) return std::nullopt;
-  return value;
-}
-
 bool is_camera(const Json& json) {
   return json.contains("cam_K") || json.contains("fx") || json.contains("depth_scale");
 }
@@ -80,7 +66,7 @@ bool is_camera(const Json& json) {
 const Json& find_camera(const std::string& file, const Json& json, const std::string& scan_file) {
   if (!json.is_object() || json.empty()) throw InputError(file, "it holds no camera", kMend);
   if (is_camera(json)) return json;
-  const auto wanted = image_number(scan_file);
+  const auto wanted = scan_format::image_number(scan_file);
   for (const auto& [key, entry] : json.items()) {
     std::uint64_t value = 0;
     if (wanted && scan_format::parse(key, value) && value == *wanted && entry.is_object()) return entry;
@@ -90,12 +76,14 @@ const Json& find_camera(const std::string& file, const Json& json, const std::st
                    "name the scan after its entry, for instance 000012.png, or give a camera.json with fx, fy, cx, cy");
 }
 
-}  // namespace
-
-DepthCamera read_depth_camera(const std::string& file, const std::string& scan_file) {
-  const Json json = Json::parse(read_whole_file(file), nullptr, false);
+Json parse_file(const std::string& file) {
+  Json json = Json::parse(read_whole_file(file), nullptr, false);
   if (json.is_discarded()) throw InputError(file, "is not JSON", kMend);
-  const Json& stated = find_camera(file, json, scan_file);
+  return json;
+}
+
+// file: for messages; with the entry where there are several.
+DepthCamera to_camera(const std::string& file, const Json& stated) {
   DepthCamera result;
   PinholeCamera& camera = result.camera;
   if (stated.contains("cam_K")) {
@@ -110,6 +98,45 @@ DepthCamera read_depth_camera(const std::string& file, const std::string& scan_f
   camera.columns = side(file, stated, "width");
   camera.rows = side(file, stated, "height");
   return result;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> scan_format::image_number(const std::string& scan_file) {
+  std::string name = scan_file.substr(scan_file.rfind('/') + 1);
+  name = name.substr(0, name.rfind('.'));
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t end = name.size();
+  while (end > 0 && !digit(name[end - 1])) --end;
+  std::size_t start = end;
+  while (start > 0 && digit(name[start - 1])) --start;
+  std::uint64_t value = 0;
+  if (!scan_format::parse(std::string_view(name).substr(start, end - start), value)) return std::nullopt;
+  return value;
+}
+
+DepthCamera read_depth_camera(const std::string& file, const std::string& scan_file) {
+  const Json json = parse_file(file);
+  return to_camera(file, find_camera(file, json, scan_file));
+}
+
+std::map<std::uint64_t, DepthCamera> read_scene_cameras(const std::string& file) {
+  constexpr const char* kMendEntries =
+      "write it as BOP's scene_camera.json: image numbers, each with cam_K and depth_scale";
+  const Json json = parse_file(file);
+  if (!json.is_object() || json.empty()) throw InputError(file, "it holds no cameras", kMendEntries);
+  std::map<std::uint64_t, DepthCamera> cameras;
+  for (const auto& [key, entry] : json.items()) {
+    std::uint64_t number = 0;
+    if (!scan_format::parse(key, number) || !entry.is_object()) {
+      throw InputError(file, "its entry " + scan_format::quoted(key) + " is no image number with a camera",
+                       kMendEntries);
+    }
+    if (!cameras.try_emplace(number, to_camera(file + ", entry " + key, entry)).second) {
+      throw InputError(file, "two entries are for image " + std::to_string(number), kMendEntries);
+    }
+  }
+  return cameras;
 }
 
 void write_camera_json(const std::string& file, const PinholeCamera& camera, double depth_scale) {

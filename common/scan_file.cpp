@@ -23,7 +23,7 @@ Scan read_depth_scan(const std::string& file, std::string_view bytes, const Scan
   const scan_format::GreyImage depth = scan_format::decode_grey_png(file, bytes);
   if (depth.bits != 16) throw InputError(file, "an 8-bit PNG is no depth image", "give a 16-bit grey PNG of depths");
   scan_format::check_grid(file, depth.columns, depth.rows);
-  DepthCamera stated = read_depth_camera(options.camera_file, file);
+  DepthCamera stated = options.camera ? *options.camera : read_depth_camera(options.camera_file, file);
   PinholeCamera& camera = stated.camera;
   // The grid is a fact; a camera for another grid has other intrinsics too.
   if ((camera.columns != 0 && camera.columns != depth.columns) || (camera.rows != 0 && camera.rows != depth.rows)) {

@@ -2,6 +2,8 @@
 // This library needs libpng, liblzf and nlohmann-json; only programs link it, never the runtime library.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,9 +13,18 @@
 
 namespace foresight {
 
+// A depth camera as BOP writes it: camera.json (fx, fy, cx, cy, depth_scale, optional width and height) or one entry of
+// scene_camera.json (cam_K without skew, depth_scale; the entry's key is the image number in the scan's file name, the
+// only entry otherwise). depth_mm = value * depth_scale.
+struct DepthCamera {
+  PinholeCamera camera;      // rows and columns 0 where the file does not state them
+  double depth_scale = 1.0;  // Unit: mm per count. Limit: > 0.
+};
+
 struct ScanReadOptions {
   std::string camera_file;  // for PNG: camera JSON, see read_depth_camera; required there, an error elsewhere
   double unit_mm = 1.0;     // length of one unit of a PCD or PLY file. Unit: mm. Limit: > 0.
+  std::optional<DepthCamera> camera = {};  // what camera_file says, where it has been read already
 };
 
 // A scan with the camera its file states; PCD and PLY state none (fit_camera finds it).
@@ -28,14 +39,10 @@ struct Scan {
 // at all, or a unit that cannot be right (the nearest depth below 10 mm or above 100 m).
 [[nodiscard]] Scan read_scan(const std::string& file, const ScanReadOptions& options = {});
 
-// A depth camera as BOP writes it: camera.json (fx, fy, cx, cy, depth_scale, optional width and height) or one entry of
-// scene_camera.json (cam_K without skew, depth_scale; the entry's key is the image number in the scan's file name, the
-// only entry otherwise). depth_mm = value * depth_scale.
-struct DepthCamera {
-  PinholeCamera camera;      // rows and columns 0 where the file does not state them
-  double depth_scale = 1.0;  // Unit: mm per count. Limit: > 0.
-};
 [[nodiscard]] DepthCamera read_depth_camera(const std::string& file, const std::string& scan_file);
+
+// All entries of a scene_camera.json by image number; each must be a camera.
+[[nodiscard]] std::map<std::uint64_t, DepthCamera> read_scene_cameras(const std::string& file);
 
 enum class PcdEncoding { ascii, binary, binary_compressed };
 // Organized PCD 0.7, fields x y z (float), invalid cells NaN. Unit: mm. Written whole or not at all.

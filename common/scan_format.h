@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,9 @@ struct GreyImage {
 
 // Throws InputError unless the grid has 32x32 to 4096x4096 cells; one row or column only is named unorganized.
 void check_grid(const std::string& file, std::int64_t columns, std::int64_t rows);
+
+// The last whole number in a file's name without its extension.
+[[nodiscard]] std::optional<std::uint64_t> image_number(const std::string& scan_file);
 
 // The point as a cell: NaN in all three when one is not finite or z is not in front of the sensor.
 [[nodiscard]] Eigen::Vector3f cell_point(double x, double y, double z);

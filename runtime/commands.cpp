@@ -1,9 +1,11 @@
 #include "runtime/commands.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <thread>
 
+#include "common/bop_scene.h"
 #include "common/errors.h"
 #include "common/program.h"
 #include "common/scan_file.h"
@@ -28,15 +30,44 @@ struct ReadyScan {
   double read_milliseconds = 0.0;
 };
 
-ReadyScan read_ready_scan(const std::string& file, const ScanSource& source) {
+ReadyScan read_ready_scan(const std::string& file, const ScanReadOptions& options) {
   const Clock::time_point start = Clock::now();
-  Scan scan = read_scan(file, {source.camera_file, source.unit == "m" ? 1000.0 : 1.0});
+  Scan scan = read_scan(file, options);
   const std::optional<PinholeCamera> camera = scan.camera ? scan.camera : fit_camera(scan.image);
   if (!camera) {
     throw InputError(file, "its grid is not that of a pinhole camera, or hardly any cell is valid",
                      "give points in the sensor frame (x right, y down, z forward), origin at the camera centre");
   }
   return {std::move(scan.image), *camera, milliseconds_since(start)};
+}
+
+ScanReadOptions read_options(const ScanSource& source) {
+  return {source.camera_file, source.unit == "m" ? 1000.0 : 1.0, {}};
+}
+
+// A scan on disk and how to read it.
+struct ListedScan {
+  std::string file;
+  ScanReadOptions options;
+};
+
+// A folder stands for all images of a BOP scene.
+std::vector<ListedScan> list_scans(const RecognizeCommand& command) {
+  std::vector<ListedScan> listed;
+  for (const std::string& scan : command.scans) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(scan, error)) {
+      listed.push_back({scan, read_options(command.source)});
+      continue;
+    }
+    std::vector<SceneImage> images = read_bop_scene(scan);
+    if (!command.source.camera_file.empty()) {
+      throw UsageError("--camera", "a camera file was given for the scene folder " + scan,
+                       "leave it out; scene_camera.json in the folder has the cameras");
+    }
+    for (SceneImage& image : images) listed.push_back({image.file, {image.camera_file, 1.0, image.camera}});
+  }
+  return listed;
 }
 
 void print(const RecognizeCommand& command, const std::string& scan, const RecognitionResult& result,
@@ -59,7 +90,8 @@ std::vector<std::string> names_of(const Database& database) {
 
 const CompiledModel& find_model(const Database& database, const std::string& name, const std::string& file) {
   const auto& models = database.models();
-  const auto found = std::find_if(models.begin(), models.end(), [&](const CompiledModel& model) { return model.name == name; });
+  const auto found =
+      std::find_if(models.begin(), models.end(), [&](const CompiledModel& model) { return model.name == name; });
   if (found != models.end()) return *found;
   std::string known;
   for (const CompiledModel& model : models) known += (known.empty() ? "" : ", ") + model.name;
@@ -103,14 +135,17 @@ int run_recognize(const RecognizeCommand& command) {
   const std::vector<std::string> names = names_of(database);
   bool any_found = false;
   bool all_complete = true;
+  const std::vector<ListedScan> scans = list_scans(command);
   // The bar would fight with results printed to the same terminal, so it shows only where they go elsewhere.
-  Progress progress(command.scans.size() > 1 ? command.progress : "none", "recognize", static_cast<int>(command.scans.size()));
-  for (const std::string& file : command.scans) {
-    const ReadyScan scan = read_ready_scan(file, command.source);
-    const Deadline deadline = command.deadline_ms > 0 ? Deadline(Clock::now() + std::chrono::milliseconds(command.deadline_ms)) : std::nullopt;
+  Progress progress(scans.size() > 1 ? command.progress : "none", "recognize", static_cast<int>(scans.size()));
+  for (const auto& [file, options] : scans) {
+    const ReadyScan scan = read_ready_scan(file, options);
+    const Deadline deadline = command.deadline_ms > 0
+                                  ? Deadline(Clock::now() + std::chrono::milliseconds(command.deadline_ms))
+                                  : std::nullopt;
     const RecognitionResult result = recognize(scan.image, scan.camera, database, command.options, deadline);
     // Not before the first result: a refused scan leaves stdout empty.
-    if (command.format == "bop-csv" && &file == &command.scans.front()) std::cout << bop_csv_header();
+    if (command.format == "bop-csv" && &file == &scans.front().file) std::cout << bop_csv_header();
     print(command, file, result, names, scan.read_milliseconds);
     any_found = any_found || !result.detections.empty();
     all_complete = all_complete && result.complete;
@@ -125,7 +160,7 @@ int run_localize(const LocalizeCommand& command) {
   const Database database = load_database(command.database);
   const CompiledModel& model = find_model(database, command.object, command.database);
   const Pose start = read_pose_file(command.pose_file);
-  const ReadyScan scan = read_ready_scan(command.scan, command.source);
+  const ReadyScan scan = read_ready_scan(command.scan, read_options(command.source));
   const Clock::time_point begin = Clock::now();
   const RefinedPose refined = refine_and_verify(scan.image, scan.camera, model, start, command.options);
   RecognitionResult result;
@@ -133,12 +168,13 @@ int run_localize(const LocalizeCommand& command) {
   result.statistics.verifications = 1;
   result.statistics.energy_evaluations = refined.localization.energy_evaluations;
   result.detections.push_back(to_detection(model, refined));
+  add_covariance(scan.image, scan.camera, database.content().sensor, model, result.detections.back());
   std::cout << result_json(command.scan, result, scan.read_milliseconds) << "\n";
   return refined.verification.accepted ? kExitDone : kExitNothingFound;
 }
 
 int run_segment(const SegmentCommand& command) {
-  const ReadyScan scan = read_ready_scan(command.scan, command.source);
+  const ReadyScan scan = read_ready_scan(command.scan, read_options(command.source));
   const SegmentationOptions options =
       command.database.empty() ? default_segmentation(scan) : load_database(command.database).content().segmentation;
   const std::vector<Region> regions = segment(scan.image, options);

@@ -1,5 +1,6 @@
 #include "runtime/foresight.h"
 
+#include <cassert>
 #include <cmath>
 #include <string_view>
 
@@ -27,25 +28,41 @@ RangeImage copy_image(const RangeImageView& view) {
   return image;
 }
 
+constexpr const char* kMemory = "(memory)";  // what errors call a database that has no file
+
 }  // namespace
 
+std::shared_ptr<const Database> load_shared_database(const std::string& file) {
+  return std::make_shared<const Database>(load_database(file));
+}
+
+std::shared_ptr<const Database> load_shared_database(const DatabaseBytes& database) {
+  const std::string_view bytes(static_cast<const char*>(database.data), database.data == nullptr ? 0 : database.size);
+  return std::make_shared<const Database>(decode_database(bytes, kMemory));
+}
+
 struct Recognizer::Impl {
-  Database database;
+  std::shared_ptr<const Database> database;
   RecognizeOptions options;
 };
 
 Recognizer::Recognizer(const std::string& database_file, const RecognizeOptions& options) {
   check(options);
-  impl_ = std::make_unique<Impl>(Impl{load_database(database_file), options});
-  check_method(options, impl_->database, database_file);
+  impl_ = std::make_unique<Impl>(Impl{load_shared_database(database_file), options});
+  check_method(options, *impl_->database, database_file);
+}
+
+Recognizer::Recognizer(std::shared_ptr<const Database> database, const RecognizeOptions& options) {
+  assert(database != nullptr);
+  check(options);
+  check_method(options, *database, "shared database");
+  impl_ = std::make_unique<Impl>(Impl{std::move(database), options});
 }
 
 Recognizer::Recognizer(const DatabaseBytes& database, const RecognizeOptions& options) {
   check(options);
-  const std::string name = "(memory)";
-  const std::string_view bytes(static_cast<const char*>(database.data), database.data == nullptr ? 0 : database.size);
-  impl_ = std::make_unique<Impl>(Impl{Database(decode_database(bytes, name)), options});
-  check_method(options, impl_->database, name);
+  impl_ = std::make_unique<Impl>(Impl{load_shared_database(database), options});
+  check_method(options, *impl_->database, kMemory);
 }
 
 Recognizer::~Recognizer() = default;
@@ -62,16 +79,16 @@ RecognitionResult Recognizer::recognize(const RangeImageView& view,
                      "give x, y, z in the sensor frame (x right, y down, z forward, mm), origin at the camera centre");
   }
   const Deadline until = deadline ? Deadline(start + *deadline) : std::nullopt;
-  return foresight::recognize(image, *camera, impl_->database, impl_->options, until);
+  return foresight::recognize(image, *camera, *impl_->database, impl_->options, until);
 }
 
 std::vector<std::string> Recognizer::object_names() const {
   std::vector<std::string> names;
-  for (const CompiledModel& model : impl_->database.models()) names.push_back(model.name);
+  for (const CompiledModel& model : impl_->database->models()) names.push_back(model.name);
   return names;
 }
 
-const Database& Recognizer::database() const { return impl_->database; }
+const Database& Recognizer::database() const { return *impl_->database; }
 
 const char* version() { return FORESIGHT_VERSION; }
 

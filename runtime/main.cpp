@@ -27,7 +27,7 @@ CLI::App* add_recognize(CLI::App& app, RecognizeCommand& c) {
   static const std::map<std::string, Pruning> prunings = {{"hcf", Pruning::highest_confidence_first}, {"none", Pruning::none}};
   CLI::App* command = app.add_subcommand("recognize", "Recognize the objects of a database in scans");
   command->add_option("DB", c.database, "Database made by foresightc")->required();
-  command->add_option("SCAN", c.scans, "Scans: organized PCD, PLY with a grid, or 16-bit depth PNG")->required();
+  command->add_option("SCAN", c.scans, "Scans: organized PCD, PLY with a grid, 16-bit depth PNG, or BOP scene folders (scene_camera.json, depth/*.png)")->required();
   command->add_option("--format", c.format, "text, json (one object a line and scan) or bop-csv")
       ->check(CLI::IsMember({"text", "json", "bop-csv"}))->capture_default_str();
   add_scan_options(*command, c.source);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include <Eigen/Geometry>
+
 #include "common/errors.h"
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
-#include "runtime/hypothesis_cliques.h"
+#include "runtime/pose_covariance.h"
 #include "runtime/scan_context.h"
 #include "runtime/two_way_search.h"
 #include "runtime/verify_in_order.h"
@@ -84,6 +86,29 @@ void recognize_as_published(const ScanContext& scan, const RecognizeOptions& opt
   verify_in_order(scan, field, hypotheses, options, deadline, result);                                    // Section V
 }
 
+// Names of models are unique in a database.
+const CompiledModel& model_of(const Detection& detection, const Database& database) {
+  const auto& models = database.models();
+  return *std::find_if(models.begin(), models.end(),
+                       [&](const CompiledModel& model) { return model.name == detection.object; });
+}
+
+Pose pose_of(const Detection& detection) {
+  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> T(detection.T_sensor_model.data());
+  return {T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>()};
+}
+
+// w, x, y, z. Of the two that mean the same rotation, the one with w > 0, or whose first number other than 0 is.
+std::array<double, 4> canonical_quaternion(const Eigen::Matrix3d& rotation) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
+  std::array<double, 4> numbers = {q.w(), q.x(), q.y(), q.z()};
+  const auto first = std::find_if(numbers.begin(), numbers.end(), [](double number) { return number != 0.0; });
+  if (first != numbers.end() && *first < 0.0) {
+    for (double& number : numbers) number = 0.0 - number;  // no -0.0
+  }
+  return numbers;
+}
+
 }  // namespace
 
 RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
@@ -91,6 +116,7 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   RecognitionResult result;
   Stopwatch total;
   Stopwatch watch;
+  double ignored = 0.0;  // the searches time their own stages
   const auto regions = extract_regions(image, camera, database.content().segmentation);
   watch.lap(result.milliseconds.extract);
   result.statistics.regions = static_cast<int>(regions.size());
@@ -103,9 +129,24 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
     } else {
       search_two_way(scan, options, deadline, result);
     }
+    watch.lap(ignored);
+    for (Detection& detection : result.detections) {
+      add_covariance(image, camera, database.content().sensor, model_of(detection, database), detection);
+    }
+    watch.lap(result.milliseconds.verify);
   }
   total.lap(result.milliseconds.total);
   return result;
+}
+
+BoundingBox bounding_box(const CompiledModel& model) {
+  Eigen::AlignedBox3d extent;
+  for (const Eigen::Vector3f& vertex : model.vertices) extent.extend(vertex.cast<double>());
+  BoundingBox box;
+  if (extent.isEmpty()) return box;
+  Eigen::Vector3d::Map(box.centre.data()) = extent.center();
+  Eigen::Vector3d::Map(box.size.data()) = extent.sizes();
+  return box;
 }
 
 Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
@@ -122,7 +163,17 @@ Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
   detection.coherent = refined.verification.coherent;
   detection.occluding = refined.verification.occluding;
   detection.score = detection.matched;
+  detection.quaternion = canonical_quaternion(pose.rotation);
+  const BoundingBox box = bounding_box(model);
+  detection.box_centre = box.centre;
+  detection.box_size = box.size;
   return detection;
+}
+
+void add_covariance(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
+                    const CompiledModel& model, Detection& detection) {
+  const PoseCovariance covariance = pose_covariance(model, pose_of(detection), image, camera, sensor);
+  std::copy(covariance.data(), covariance.data() + covariance.size(), detection.covariance.begin());  // symmetric
 }
 
 RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& camera, const CompiledModel& model,

@@ -1,6 +1,7 @@
 // The runtime's order of stages.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <optional>
 
@@ -36,8 +37,19 @@ struct RefinedPose {
   Localization localization;
   Verification verification;
 };
-// A refined pose as a detection: pose, fractions and score; no rank, faces or regions yet.
+// Of the CAD model's vertices, along the model's axes. Unit: mm.
+struct BoundingBox {
+  std::array<double, 3> centre{};
+  std::array<double, 3> size{};
+};
+[[nodiscard]] BoundingBox bounding_box(const CompiledModel& model);
+
+// A refined pose as a detection: pose, box, fractions and score; no rank, faces, regions or covariance yet.
 [[nodiscard]] Detection to_detection(const CompiledModel& model, const RefinedPose& refined);
+
+// Fills in the covariance. sensor: its noise. REQUIRES: the detection is of the model.
+void add_covariance(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
+                    const CompiledModel& model, Detection& detection);
 
 // Judged by alpha, beta and gamma, whatever the method of the options: a pose that is given has no rivals.
 [[nodiscard]] RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& camera, const CompiledModel& model,

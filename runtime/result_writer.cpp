@@ -4,7 +4,10 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 #include <string_view>
 
 namespace foresight {
@@ -17,6 +20,12 @@ Json pose_json(const std::array<double, 16>& T) {
   for (std::size_t row = 0; row < 4; ++row) {
     rows.push_back({T[4 * row], T[4 * row + 1], T[4 * row + 2], T[4 * row + 3]});
   }
+  return rows;
+}
+
+Json covariance_json(const std::array<double, 36>& covariance) {
+  Json rows = Json::array();
+  for (auto row = covariance.begin(); row != covariance.end(); row += 6) rows.push_back(std::vector(row, row + 6));
   return rows;
 }
 
@@ -41,6 +50,10 @@ Json detection_json(const Detection& detection) {
   json["regions"] = detection.regions;
   json["ambiguous_with"] = Json::array();
   for (const Alternative& other : detection.ambiguous_with) json["ambiguous_with"].push_back(alternative_json(other));
+  json["quaternion"] = detection.quaternion;
+  json["covariance"] = covariance_json(detection.covariance);
+  json["box"]["centre"] = detection.box_centre;
+  json["box"]["size"] = detection.box_size;
   return json;
 }
 
@@ -155,6 +168,30 @@ ScanNumbers scan_numbers(std::string_view path) {
   return {last_number(folder), last_number(name)};
 }
 
+// The number of an object named as in BOP, obj_000005.
+std::optional<long long> bop_number(std::string_view name) {
+  constexpr std::string_view kStart = "obj_";
+  if (!name.starts_with(kStart)) return std::nullopt;
+  name.remove_prefix(kStart.size());
+  long long number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error != std::errc() || end != name.data() + name.size() || number < 0) return std::nullopt;
+  return number;
+}
+
+// obj_id by name. One rule for the whole database: numbers and places together could mean two objects by one number.
+std::map<std::string_view, long long> object_ids(const std::vector<std::string>& object_names) {
+  std::map<std::string_view, long long> places;
+  std::map<std::string_view, long long> numbers;
+  std::set<long long> different;
+  for (const std::string& name : object_names) {
+    places.emplace(name, static_cast<long long>(places.size()) + 1);
+    const std::optional<long long> number = bop_number(name);
+    if (number && different.insert(*number).second) numbers.emplace(name, *number);
+  }
+  return numbers.size() == places.size() ? numbers : places;
+}
+
 }  // namespace
 
 std::string result_json(const std::string& scan, const RecognitionResult& result, double read_milliseconds) {
@@ -191,12 +228,13 @@ std::string bop_csv_header() { return "scene_id,im_id,obj_id,score,R,t,time\n"; 
 std::string bop_csv_rows(const std::string& scan, const RecognitionResult& result,
                          const std::vector<std::string>& object_names, double read_milliseconds) {
   const ScanNumbers numbers = scan_numbers(scan);
+  const std::map<std::string_view, long long> ids = object_ids(object_names);
   // BOP wants the time of the whole image in every row of it.
   const std::string seconds = shortest((read_milliseconds + result.milliseconds.total) / 1000.0);
   std::string rows;
   for (const Detection& detection : result.detections) {
-    const auto name = std::find(object_names.begin(), object_names.end(), detection.object);
-    const auto object = name == object_names.end() ? 0 : name - object_names.begin() + 1;
+    const auto id = ids.find(detection.object);
+    const long long object = id == ids.end() ? 0 : id->second;
     const std::array<double, 16>& T = detection.T_sensor_model;
     rows += std::to_string(numbers.scene) + "," + std::to_string(numbers.image) + "," + std::to_string(object) + "," +
             shortest(detection.score) + ",";

@@ -41,6 +41,12 @@ if command -v pkg-config >/dev/null; then
       fail "pkg-config $static: the program cannot be built"
     expect_same "pkg-config $static" "$version wedge" "$("$work/load" "$work/wedge.fdb")"
   done
+  # From C: the libraries are the same, linked by the C++ compiler.
+  printf '%s\n' '#include <foresight/foresight_c.h>' '#include <stdio.h>' 'int main(void) { puts(foresight_version()); return 0; }' >"$work/version.c"
+  # shellcheck disable=SC2046
+  { cc -std=c99 -Wall -Wextra -Wpedantic -Werror -c "$work/version.c" -o "$work/version.o" $(pkg-config --cflags foresight) &&
+    "$cxx" "$work/version.o" -o "$work/version" $(pkg-config --libs foresight); } >"$work/log" 2>&1 || fail "C: the program cannot be built"
+  expect_same "C" "$version" "$("$work/version")"
   printf 'OFF\n' >"$work/foreign.fdb"
   code=0
   said=$("$work/load" "$work/foreign.fdb") || code=$?

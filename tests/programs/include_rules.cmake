@@ -51,6 +51,7 @@ forbid("compiler/*.cpp" "foresight/v1/.*\\.pb\\.h" compiler/database_writer.cpp)
 
 # The public header asks for nothing but the standard library, whose headers have neither folder nor ending.
 forbid("runtime/foresight.h" "\"|<[^>]*[/.]")
+forbid("runtime/foresight_c.h" "\"|<[^s]|<s[^t]|<st[^d]|<std[^i]|<stdi[^n]")  # <stdint.h> alone
 
 if(lines_seen LESS 500)
   message(FATAL_ERROR "only ${lines_seen} includes seen: the rules look in the wrong place")

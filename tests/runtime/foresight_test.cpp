@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <fstream>
 #include <memory>
 #include <thread>
@@ -36,6 +38,10 @@ void expect_same(const RecognitionResult& a, const RecognitionResult& b) {
     EXPECT_EQ(a.detections[i].object, b.detections[i].object);
     EXPECT_EQ(a.detections[i].T_sensor_model, b.detections[i].T_sensor_model);
     EXPECT_EQ(a.detections[i].score, b.detections[i].score);
+    EXPECT_EQ(a.detections[i].quaternion, b.detections[i].quaternion);
+    EXPECT_EQ(a.detections[i].covariance, b.detections[i].covariance);
+    EXPECT_EQ(a.detections[i].faces, b.detections[i].faces);
+    EXPECT_EQ(a.detections[i].regions, b.detections[i].regions);
   }
 }
 
@@ -106,6 +112,79 @@ TEST(Recognizer, gives_identical_results_to_several_threads) {
   for (const RecognitionResult& result : results) expect_same(result, alone);
 }
 
+TEST(Recognizer, recognizers_of_one_database_give_every_thread_the_same_bits) {
+  const Client client;
+  const RecognitionResult alone = Recognizer(client.file).recognize(client.view());
+  std::vector<RecognitionResult> results(4);
+  std::vector<std::thread> threads;
+  {
+    const std::shared_ptr<const Database> shared = load_shared_database(client.file);
+    for (RecognitionResult& result : results) {
+      threads.emplace_back([&client, &result, shared] { result = Recognizer(shared).recognize(client.view()); });
+    }
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const RecognitionResult& result : results) expect_same(result, alone);
+}
+
+TEST(Recognizer, keeps_the_database_it_was_given) {
+  const Client client;
+  auto shared = load_shared_database(client.file);
+  const std::weak_ptr<const Database> watched = shared;
+  {
+    const Recognizer first(shared);
+    const Recognizer second(std::move(shared));
+    EXPECT_EQ(&first.database(), &second.database());
+    EXPECT_EQ(watched.use_count(), 2);
+  }
+  EXPECT_TRUE(watched.expired());
+}
+
+Eigen::Matrix3d rotation_of(const std::array<double, 4>& quaternion) {
+  return Eigen::Quaterniond(quaternion[0], quaternion[1], quaternion[2], quaternion[3]).toRotationMatrix();
+}
+
+TEST(Recognizer, tells_pose_and_uncertainty_of_both_methods_whole) {
+  const Client client;
+  const auto shared = load_shared_database(client.file);
+  for (const Method method : {Method::two_way, Method::paper}) {
+    RecognizeOptions options;
+    options.method = method;
+    const RecognitionResult result = Recognizer(shared, options).recognize(client.view());
+    EXPECT_FALSE(result.detections.empty());
+    for (const Detection& detection : result.detections) {
+      EXPECT_LT((rotation_of(detection.quaternion) - test::pose_of(detection).rotation).norm(), 1e-12);
+      EXPECT_GE(detection.quaternion[0], 0.0);
+      const Eigen::Map<const Eigen::Matrix<double, 6, 6>> covariance(detection.covariance.data());
+      EXPECT_EQ(Eigen::MatrixXd(covariance), Eigen::MatrixXd(covariance.transpose()));
+      EXPECT_EQ(covariance.llt().info(), Eigen::Success);
+      EXPECT_LT(covariance(0, 0), 1e3);  // some data say where it is
+      for (const double side : detection.box_size) EXPECT_GT(side, 0.0);
+    }
+  }
+}
+
+TEST(Detection, has_one_quaternion_for_each_rotation) {
+  CompiledModel model;
+  model.vertices = {{1.0F, 2.0F, 3.0F}, {5.0F, -2.0F, 4.0F}};
+  Random random(8);
+  const double pi = 3.14159265358979323846;
+  std::vector<Eigen::Vector3d> vectors = {{0, 0, 0}, {pi, 0, 0}, {0, -pi, 0}, {0, 0, pi}, {0, pi / 2, 0}};
+  for (int i = 0; i < 50; ++i) vectors.push_back(random.uniform(0.0, pi) * random.direction());
+  for (const Eigen::Vector3d& vector : vectors) {
+    RefinedPose refined{};
+    refined.localization.T_sensor_model.rotation = rotation_from_vector(vector);
+    const Detection detection = to_detection(model, refined);
+    const auto& q = detection.quaternion;
+    EXPECT_NEAR(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1.0, 1e-12);
+    EXPECT_GE(q[0], 0.0);
+    EXPECT_LT((rotation_of(q) - refined.localization.T_sensor_model.rotation).norm(), 1e-9);
+  }
+  const Detection detection = to_detection(model, {});
+  EXPECT_EQ(detection.box_centre, (std::array<double, 3>{3.0, 0.0, 3.5}));
+  EXPECT_EQ(detection.box_size, (std::array<double, 3>{4.0, 4.0, 1.0}));
+}
+
 TEST(Recognizer, takes_every_kind_of_invalid_cell_for_a_hole) {
   const Client client;
   Client damaged;
@@ -158,6 +237,7 @@ TEST(Recognizer, uses_databases_without_acceptance_models_by_the_papers_method_a
   const std::string old = client.folder.file("old.db");
   std::ofstream(old, std::ios::binary) << encode_database(content);
   EXPECT_THROW(Recognizer{old}, DatabaseError);
+  EXPECT_THROW(Recognizer{load_shared_database(old)}, DatabaseError);
   RecognizeOptions paper;
   paper.method = Method::paper;
   expect_same(Recognizer(old, paper).recognize(client.view()), Recognizer(client.file, paper).recognize(client.view()));
@@ -172,6 +252,8 @@ TEST(Recognizer, refuses_files_and_options_it_cannot_use) {
   RecognizeOptions wrong;
   wrong.smallest_matched = 7.0;
   EXPECT_THROW(Recognizer(client.file, wrong), UsageError);
+  EXPECT_THROW(Recognizer(load_shared_database(client.file), wrong), UsageError);
+  EXPECT_THROW((void)load_shared_database(foreign), DatabaseError);
 }
 
 TEST(Recognizer, loads_from_memory_what_it_loads_from_a_file) {
@@ -209,6 +291,9 @@ TEST(Version, has_three_numbers) {
   int patch = -1;
   char rest = 0;
   EXPECT_EQ(std::sscanf(version(), "%d.%d.%d%c", &major, &minor, &patch, &rest), 3);
+  EXPECT_EQ(major, FORESIGHT_API_VERSION_MAJOR);
+  EXPECT_EQ(minor, FORESIGHT_API_VERSION_MINOR);
+  EXPECT_EQ(patch, FORESIGHT_API_VERSION_PATCH);
 }
 
 }  // namespace

@@ -35,6 +35,10 @@ RecognitionResult sample() {
     detection.rank = 2;
     detection.faces = {3, 7, 8};
     detection.regions = {2, 5, 6};
+    for (double& number : detection.quaternion) number = random.gaussian();
+    for (double& number : detection.covariance) number = random.gaussian() * 1e-7;
+    for (double& number : detection.box_centre) number = random.gaussian();
+    for (double& number : detection.box_size) number = random.uniform();
     if (result.detections.empty()) detection.ambiguous_with = {turned("castle", random), turned("holed_cube", random)};
     result.detections.push_back(detection);
   }
@@ -57,7 +61,8 @@ TEST(ResultJson, has_the_documented_keys_in_order) {
   EXPECT_EQ(keys(json), (Keys{"scan", "complete", "detections", "statistics", "milliseconds"}));
   for (const Json& detection : json["detections"]) {
     EXPECT_EQ(keys(detection), (Keys{"object", "pose", "score", "alpha", "beta", "gamma", "rank", "faces", "regions",
-                                     "ambiguous_with"}));
+                                     "ambiguous_with", "quaternion", "covariance", "box"}));
+    EXPECT_EQ(keys(detection["box"]), (Keys{"centre", "size"}));
   }
   EXPECT_EQ(keys(json["detections"][0]["ambiguous_with"][0]), (Keys{"object", "pose", "score"}));
   EXPECT_EQ(keys(json["statistics"]), (Keys{"regions", "possible_matches", "threshold_matches", "active_matches",
@@ -101,6 +106,14 @@ TEST(ResultJson, keeps_every_bit_of_every_number) {
     EXPECT_EQ(read["alpha"].get<double>(), wrote.matched);
     EXPECT_EQ(read["beta"].get<double>(), wrote.coherent);
     EXPECT_EQ(read["gamma"].get<double>(), wrote.occluding);
+    EXPECT_EQ((read["quaternion"].get<std::array<double, 4>>()), wrote.quaternion);
+    ASSERT_EQ(read["covariance"].size(), 6U);
+    for (std::size_t j = 0; j < 36; ++j) {
+      ASSERT_EQ(read["covariance"][j / 6].size(), 6U);
+      EXPECT_EQ(read["covariance"][j / 6][j % 6].get<double>(), wrote.covariance[j]);
+    }
+    EXPECT_EQ((read["box"]["centre"].get<std::array<double, 3>>()), wrote.box_centre);
+    EXPECT_EQ((read["box"]["size"].get<std::array<double, 3>>()), wrote.box_size);
   }
 }
 
@@ -173,6 +186,26 @@ TEST(BopCsv, has_seven_columns_and_rows_that_read_back) {
     EXPECT_EQ(std::stod(second.substr(at)), T[i]);
     at = second.find_first_of(" ,", at) + 1;
   }
+}
+
+TEST(BopCsv, takes_numbers_from_the_names_of_bops_objects) {
+  RecognitionResult result;
+  result.detections.resize(1);
+  const auto id = [&](const std::string& object, const std::vector<std::string>& names) {
+    result.detections[0].object = object;
+    const std::string row = bop_csv_rows("x", result, names, 0.0);
+    return row.substr(4, row.find(',', 4) - 4);
+  };
+  EXPECT_EQ(id("obj_000005", {"obj_000030", "obj_000005"}), "5");
+  EXPECT_EQ(id("obj_000030", {"obj_000030", "obj_000005"}), "30");
+  // One rule for all objects of a database: else two could get the same number.
+  EXPECT_EQ(id("obj_000002", {"castle", "tee", "obj_000002"}), "3");
+  EXPECT_EQ(id("obj_2", {"obj_2", "obj_000002"}), "1");
+  EXPECT_EQ(id("obj_-7", {"obj_-7"}), "1");
+  EXPECT_EQ(id("obj_", {"obj_"}), "1");
+  EXPECT_EQ(id("obj_7b", {"obj_7b"}), "1");
+  EXPECT_EQ(id("obj_99999999999999999999", {"obj_99999999999999999999"}), "1");
+  EXPECT_EQ(id("other", {"obj_000030"}), "0");
 }
 
 TEST(BopCsv, takes_numbers_from_file_and_folder_names) {
