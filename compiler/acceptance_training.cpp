@@ -183,13 +183,14 @@ class SceneTeacher {
     // The best looking right ones and the best looking wrong ones: what recognition will have to tell apart.
     std::vector<std::size_t> wrong;
     int near = 0;
-    const std::size_t most = std::min(static_cast<std::size_t>(options.most_starts), starts.size());
+    const auto last_right = static_cast<std::size_t>(options.most_right_starts);
+    const std::size_t most = std::min(static_cast<std::size_t>(options.most_wrong_starts), starts.size());
     for (std::size_t i = 0; i < most; ++i) {
       const StartPose& start = starts[i];
       const PosedModel posed{model_, start.T_sensor_model};
       const bool is_near = truth_ && same_share(posed, {model_, *truth_}, context_.camera) >= kNearShare;
       if (!is_near) wrong.push_back(i);
-      if (!is_near || ++near > options.most_near) continue;
+      if (!is_near || i >= last_right || ++near > options.most_near) continue;
       const bool first = lessons_.qualities.empty();
       if (!learn(start.T_sensor_model) || !first) continue;
       lessons_.qualities.push_back(start.quality);

@@ -11,9 +11,10 @@ namespace foresight {
 
 struct AcceptanceTrainingOptions {
   int scenes = 36;  // simulated. Limit: >= 4, one of each kind.
-  // Of the starts in a scene, best looking first, so many are looked at, and of these so many refined near the true
-  // pose and so many elsewhere. Limit: >= 1, most_far >= 2.
-  int most_starts = 300;
+  // Of the starts in a scene, best looking first, so many are looked at for right ones, so many for wrong ones; of these
+  // so many are refined near the true pose and so many elsewhere. Limit: >= 1, most_far >= 2.
+  int most_right_starts = 60;
+  int most_wrong_starts = 300;
   int most_near = 3;
   int most_far = 8;
   std::uint64_t seed = 1;

@@ -10,8 +10,8 @@ namespace foresight {
 
 // How to read scans.
 struct ScanSource {
-  std::string camera_file;   // of depth PNGs
-  std::string unit = "mm";   // of PCD and PLY
+  std::string camera_file;  // of depth PNGs
+  std::string unit = "mm";  // of PCD and PLY
 };
 
 struct RecognizeCommand {
@@ -19,7 +19,7 @@ struct RecognizeCommand {
   std::vector<std::string> scans;
   std::string format = "text";
   ScanSource source;
-  int deadline_ms = 0;       // 0: none
+  int deadline_ms = 0;  // 0: none
   std::string progress = "auto";
   RecognizeOptions options;
 };
@@ -35,7 +35,7 @@ struct LocalizeCommand {
 
 struct SegmentCommand {
   std::string scan;
-  std::string database;      // empty: default settings
+  std::string database;  // empty: default settings
   std::string output;
   bool color = false;
   ScanSource source;

@@ -23,10 +23,12 @@ std::vector<PosedPoint> posed_points(const CompiledModel& model, const Pose& T_s
   return posed;
 }
 
-std::vector<Eigen::Vector3d> agreeing_points(const std::vector<PosedPoint>& points, const Eigen::Vector3d& normal, double cosine) {
+std::vector<Eigen::Vector3d> agreeing_points(const std::vector<PosedPoint>& points, const Eigen::Vector3d& normal,
+                                             double cosine) {
   std::vector<Eigen::Vector3d> agreeing;
   for (const PosedPoint& point : points) {
-    if (std::any_of(point.normals.begin(), point.normals.end(), [&](const auto& n) { return n.dot(normal) >= cosine; })) {
+    if (std::any_of(point.normals.begin(), point.normals.end(),
+                    [&](const auto& n) { return n.dot(normal) >= cosine; })) {
       agreeing.push_back(point.position);
     }
   }
@@ -41,7 +43,8 @@ double explained_share(const Region& region, const RangeImage& image, const std:
   for (std::size_t i = 0; i < region.cells.size(); i += step) {
     const Eigen::Vector3d data = image[region.cells[i]].cast<double>();
     ++looked_at;
-    explained += std::any_of(points.begin(), points.end(), [&](const auto& p) { return (p - data).squaredNorm() <= reach * reach; });
+    explained += std::any_of(points.begin(), points.end(),
+                             [&](const auto& p) { return (p - data).squaredNorm() <= reach * reach; });
   }
   return static_cast<double>(explained) / looked_at;
 }

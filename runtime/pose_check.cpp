@@ -115,6 +115,10 @@ PoseCheck PoseChecker::check(int model, const Pose& T_sensor_model) {
       check.contradicted += cells;
       continue;
     }
+    if (scan_.taken[static_cast<std::size_t>(cell)]) {
+      check.contradicted += cells;
+      continue;
+    }
     const int region = scan_.labels[static_cast<std::size_t>(cell)] - 1;
     if (region < 0) {
       check.explained += cells;
@@ -122,7 +126,7 @@ PoseCheck PoseChecker::check(int model, const Pose& T_sensor_model) {
       continue;
     }
     const auto r = static_cast<std::size_t>(region);
-    if (scan_.taken[r] || scan_.regions[r].region.normal.dot(normal) < options_.normal_cosine) {
+    if (scan_.regions[r].region.normal.dot(normal) < options_.normal_cosine) {
       check.contradicted += cells;
       continue;
     }
@@ -133,7 +137,7 @@ PoseCheck PoseChecker::check(int model, const Pose& T_sensor_model) {
   for (const FaceSupport& support : check.supports) {
     double& explained = of_region_[static_cast<std::size_t>(support.region)];
     if (!(explained > 0.0)) continue;
-    const auto cells = static_cast<double>(scan_.regions[static_cast<std::size_t>(support.region)].region.cells.size());
+    const double cells = std::max(1, scan_.free_cells[static_cast<std::size_t>(support.region)]);
     check.owned += explained * std::min(1.0, explained / cells);
     explained = 0.0;
   }

@@ -8,9 +8,10 @@
 namespace foresight {
 namespace {
 
-constexpr double kDoubt = 30.0;   // cells against every pose, so that a handful of cells for it makes none certain
-constexpr int kFewestCells = 12;  // that say something about a triangle
-constexpr double kMuch = 300.0;   // owned cells at which the amount is a half
+constexpr double kDoubt = 30.0;    // cells against every pose, so that a handful of cells for it makes none certain
+constexpr int kFewestCells = 12;   // that say something about a triangle
+constexpr double kMuch = 300.0;    // owned cells at which the amount is a half
+constexpr double kLeftOver = 0.2;  // of a region that is explained but for this share nothing remains for others
 constexpr double kLeftByLocalization = 0.8;  // Unit: mm.
 constexpr double kLeastDistance = 1.5;       // Unit: mm.
 
@@ -27,15 +28,10 @@ bool inner(const Rendering& drawn, int row, int column, double step) {
   return true;
 }
 
-// Whether a region that lies on the drawn surface is none of it.
-bool contradicts(const LabelledScan& scan, std::size_t region, const Eigen::Vector3d& normal,
-                 const EvidenceOptions& options) {
-  return scan.taken[region] || scan.regions[region].region.normal.dot(normal) < options.normal_cosine;
-}
-
 // A cell of the image in which the object is drawn.
 struct DrawnCell {
   int cell = 0;        // of the image, -1 beyond it
+  int triangle = 0;    // of the model
   double depth = 0.0;  // z of the surface drawn. Unit: mm.
   Eigen::Vector3d normal;
   double facing = 0.0;  // -normal . ray, with a ray of z = 1: turns a difference of depth into one across the surface
@@ -51,6 +47,7 @@ DrawnCell drawn_cell(const Rendering& drawn, int row, int column, const Labelled
       image_row >= 0 && image_row < scan.image.rows && image_column >= 0 && image_column < scan.image.columns;
   DrawnCell cell;
   cell.cell = in_image ? scan.image.cell(image_row, image_column) : -1;
+  cell.triangle = drawn.triangle[at];
   cell.depth = drawn.depth[at];
   cell.normal = drawn.normal[static_cast<std::size_t>(drawn.triangle[at])].cast<double>();
   cell.facing = -cell.normal.dot(ray);
@@ -66,9 +63,29 @@ Judgement judge(const DrawnCell& cell, const LabelledScan& scan, const EvidenceO
   const double across = (static_cast<double>(scan.image[cell.cell].z()) - cell.depth) * cell.facing;
   if (across > options.distance) return Judgement::behind;
   if (across < -options.distance) return Judgement::front;
+  if (scan.taken[static_cast<std::size_t>(cell.cell)]) return Judgement::tilted;
   const int region = scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
-  const bool tilted = region >= 0 && contradicts(scan, static_cast<std::size_t>(region), cell.normal, options);
+  const bool tilted = region >= 0 && scan.regions[static_cast<std::size_t>(region)].region.normal.dot(cell.normal) <
+                                         options.normal_cosine;
   return tilted ? Judgement::tilted : Judgement::explained;
+}
+
+// Calls visit(cell, judgement, inner) for each cell that would show the object, row by row.
+template <typename Visit>
+void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,
+                   const EvidenceOptions& options, const Visit& visit) {
+  const Rendering drawn = render(model, T_sensor_model, scan.camera, std::max(scan.image.rows, scan.image.columns));
+  for (int row = 0; row < drawn.rows; ++row) {
+    for (int column = 0; column < drawn.columns; ++column) {
+      const auto at = static_cast<std::size_t>(drawn.cell(row, column));
+      if (drawn.triangle[at] < 0) continue;
+      const DrawnCell cell = drawn_cell(drawn, row, column, scan);
+      if (cell.cosine <= std::cos(scan.sensor.largest_incidence)) continue;  // the sensor gives no data here
+      // Depth changes by this much from one cell to the next.
+      const double step = drawn.depth[at] / scan.camera.fx / std::max(cell.cosine, 0.05);
+      visit(cell, judge(cell, scan, options), inner(drawn, row, column, options.distance + 3.0 * step));
+    }
+  }
 }
 
 // Counts judgements. Cells at outlines count only for what regions the object explains.
@@ -102,15 +119,15 @@ class Tally {
   }
 
   // triangle_faces: empty where unknown; then each triangle is a face.
-  [[nodiscard]] PoseEvidence sum(const std::vector<DescribedRegion>& regions, const std::vector<int>& triangle_faces) {
+  [[nodiscard]] PoseEvidence sum(const std::vector<int>& free_cells, const std::vector<int>& triangle_faces) {
     std::vector<int> of_face(of_triangle_.size(), 0);
     for (std::size_t t = 0; t < of_triangle_.size(); ++t) {
       const std::size_t face = triangle_faces.empty() ? t : static_cast<std::size_t>(triangle_faces[t]);
       of_face[face] += of_triangle_[t].explained;
       evidence_.largest = std::max(evidence_.largest, of_face[face]);
     }
-    for (std::size_t r = 0; r < regions.size(); ++r) {
-      const auto cells = static_cast<double>(regions[r].region.cells.size());
+    for (std::size_t r = 0; r < free_cells.size(); ++r) {
+      const double cells = std::max(1, free_cells[r]);
       evidence_.owned += inner_of_region_[r] * std::min(1.0, evidence_.explained_of_region[r] / cells);
     }
     for (const Piece& piece : of_triangle_) {
@@ -144,12 +161,19 @@ LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, co
                     sensor,
                     regions,
                     std::vector<int>(image.points.size(), 0),
-                    std::vector<bool>(regions.size(), false)};
+                    std::vector<bool>(image.points.size(), false),
+                    {}};
   for (std::size_t r = 0; r < regions.size(); ++r) {
     for (const int cell : regions[r].region.cells)
       scan.labels[static_cast<std::size_t>(cell)] = static_cast<int>(r) + 1;
+    scan.free_cells.push_back(static_cast<int>(regions[r].region.cells.size()));
   }
   return scan;
+}
+
+bool is_taken(const LabelledScan& scan, int region) {
+  const auto r = static_cast<std::size_t>(region);
+  return 2 * static_cast<std::size_t>(scan.free_cells[r]) <= scan.regions[r].region.cells.size();
 }
 
 std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence) {
@@ -181,22 +205,33 @@ double probability_right(const AcceptanceModel& model, const PoseEvidence& evide
 
 PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,
                              const EvidenceOptions& options) {
-  const Rendering drawn = render(model, T_sensor_model, scan.camera, std::max(scan.image.rows, scan.image.columns));
   Tally tally(model.triangles.size(), scan.regions.size());
-  for (int row = 0; row < drawn.rows; ++row) {
-    for (int column = 0; column < drawn.columns; ++column) {
-      const auto at = static_cast<std::size_t>(drawn.cell(row, column));
-      if (drawn.triangle[at] < 0) continue;
-      const DrawnCell cell = drawn_cell(drawn, row, column, scan);
-      if (cell.cosine <= std::cos(scan.sensor.largest_incidence)) continue;  // the sensor gives no data here
-      // Depth changes by this much from one cell to the next.
-      const double step = drawn.depth[at] / scan.camera.fx / std::max(cell.cosine, 0.05);
-      const int region = cell.cell < 0 ? -1 : scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
-      tally.add(drawn.triangle[at], judge(cell, scan, options), region,
-                inner(drawn, row, column, options.distance + 3.0 * step));
-    }
+  look_at_cells(model, T_sensor_model, scan, options, [&](const DrawnCell& cell, Judgement judgement, bool inner) {
+    const int region = cell.cell < 0 ? -1 : scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
+    tally.add(cell.triangle, judgement, region, inner);
+  });
+  return tally.sum(scan.free_cells, model.triangle_faces);
+}
+
+void take(LabelledScan& scan, int cell) {
+  const auto at = static_cast<std::size_t>(cell);
+  if (scan.taken[at]) return;
+  scan.taken[at] = true;
+  if (scan.labels[at] > 0) --scan.free_cells[static_cast<std::size_t>(scan.labels[at] - 1)];
+}
+
+void take_explained(const CompiledModel& model, const Pose& T_sensor_model, const EvidenceOptions& options,
+                    LabelledScan& scan) {
+  std::vector<int> explained;
+  look_at_cells(model, T_sensor_model, scan, options, [&](const DrawnCell& cell, Judgement judgement, bool) {
+    if (judgement == Judgement::explained) explained.push_back(cell.cell);
+  });
+  for (const int cell : explained) take(scan, cell);
+  for (std::size_t r = 0; r < scan.regions.size(); ++r) {
+    const std::vector<int>& cells = scan.regions[r].region.cells;
+    if (scan.free_cells[r] > kLeftOver * static_cast<double>(cells.size())) continue;
+    for (const int cell : cells) take(scan, cell);
   }
-  return tally.sum(scan.regions, model.triangle_faces);
 }
 
 }  // namespace foresight

@@ -23,13 +23,17 @@ struct LabelledScan {
   const PinholeCamera& camera;
   const SensorModel& sensor;
   const std::vector<DescribedRegion>& regions;
-  std::vector<int> labels;  // by cell: 0 = no region, i + 1 = regions[i]
-  std::vector<bool> taken;  // by region: explained by another object already, so that it contradicts this one
+  std::vector<int> labels;      // by cell: 0 = no region, i + 1 = regions[i]
+  std::vector<bool> taken;      // by cell: explained by another object already, so that it contradicts this one
+  std::vector<int> free_cells;  // by region: those that are not taken
 };
 
-// No region taken. The scan refers to all that is given.
+// Nothing taken. The scan refers to all that is given.
 [[nodiscard]] LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
                                       const std::vector<DescribedRegion>& regions);
+
+// Whether other objects explain at least half of a region.
+[[nodiscard]] bool is_taken(const LabelledScan& scan, int region);
 
 // Data of a surface at its place are nearer than this to it: three standard deviations of the sensor, and what
 // localization leaves. Unit: mm.
@@ -66,5 +70,11 @@ struct PoseEvidence {
 
 [[nodiscard]] PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model,
                                            const LabelledScan& scan, const EvidenceOptions& options = {});
+
+void take(LabelledScan& scan, int cell);
+
+// Takes the cells that the object explains, and what is left of regions of which hardly anything is.
+void take_explained(const CompiledModel& model, const Pose& T_sensor_model, const EvidenceOptions& options,
+                    LabelledScan& scan);
 
 }  // namespace foresight

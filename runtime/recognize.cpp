@@ -1,8 +1,7 @@
 #include "runtime/recognize.h"
 
-#include <algorithm>
-
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "common/errors.h"
 #include "runtime/highest_confidence_first.h"
@@ -52,7 +51,8 @@ void check(const RecognizeOptions& options) {
   potential(options.potentials.contradiction_on_on, "contradiction_on_on");
   potential(options.potentials.contradiction_on_off, "contradiction_on_off");
   if (options.most_detections < 0) throw UsageError("most_detections", "negative", "give 0 for no limit, or a count");
-  if (options.most_verifications < 0) throw UsageError("most_verifications", "negative", "give 0 for no limit, or a count");
+  if (options.most_verifications < 0)
+    throw UsageError("most_verifications", "negative", "give 0 for no limit, or a count");
 }
 
 void check_method(const RecognizeOptions& options, const Database& database, const std::string& file) {
@@ -73,17 +73,17 @@ void recognize_as_published(const ScanContext& scan, const RecognizeOptions& opt
   Stopwatch watch;
   const Database& database = scan.database;
   const BackgroundOptions background = background_for(database.content().density);
-  const auto matches = match_likelihoods(scan.regions, database, background);                             // eqs. (4), (5)
+  const auto matches = match_likelihoods(scan.regions, database, background);  // eqs. (4), (5)
   const auto field =
-      build_hypothesis_field(scan.regions, matches, database, background, options.potentials);            // eqs. (1)-(3)
+      build_hypothesis_field(scan.regions, matches, database, background, options.potentials);  // eqs. (1)-(3)
   const auto labels = prune(field, options.pruning);
   watch.lap(result.milliseconds.field);
-  const auto hypotheses = hypothesis_cliques(field, database, labels);                                    // least energy first
+  const auto hypotheses = hypothesis_cliques(field, database, labels);  // least energy first
   watch.lap(result.milliseconds.hypotheses);
   result.statistics.threshold_matches = static_cast<long>(matches.size());
   result.statistics.active_matches = static_cast<long>(std::count(labels.begin(), labels.end(), kOn));
   result.statistics.hypotheses = static_cast<long>(hypotheses.size());
-  verify_in_order(scan, field, hypotheses, options, deadline, result);                                    // Section V
+  verify_in_order(scan, field, hypotheses, options, deadline, result);  // Section V
 }
 
 // Names of models are unique in a database.
@@ -153,7 +153,9 @@ Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
   Detection detection;
   detection.object = model.name;
   const Pose& pose = refined.localization.T_sensor_model;
-  const auto entry = [&](int row, int column) -> double& { return detection.T_sensor_model[static_cast<std::size_t>(4 * row + column)]; };
+  const auto entry = [&](int row, int column) -> double& {
+    return detection.T_sensor_model[static_cast<std::size_t>(4 * row + column)];
+  };
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) entry(row, column) = pose.rotation(row, column);
     entry(row, 3) = pose.translation[row];
@@ -182,7 +184,8 @@ RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& came
   const ViewingSphere sphere(kAspectCells);
   RefinedPose refined;
   refined.localization = localize(model, sphere, T_sensor_model, data, localization_options(options));
-  refined.verification = verify(model, sphere, refined.localization.T_sensor_model, image, camera, data, verification_options(options));
+  refined.verification =
+      verify(model, sphere, refined.localization.T_sensor_model, image, camera, data, verification_options(options));
   return refined;
 }
 

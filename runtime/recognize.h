@@ -20,7 +20,6 @@ void check(const RecognizeOptions& options);  // throws UsageError
 // Throws DatabaseError naming the file when the method of the options needs what the database does not hold.
 void check_method(const RecognizeOptions& options, const Database& database, const std::string& file);
 
-
 // The options of single stages.
 [[nodiscard]] LocalizationOptions localization_options(const RecognizeOptions& options);
 [[nodiscard]] VerificationOptions verification_options(const RecognizeOptions& options);
@@ -28,9 +27,9 @@ void check_method(const RecognizeOptions& options, const Database& database, con
 using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 
 // Recognizes on valid input; throws nothing. REQUIRES: check_method passes.
-[[nodiscard]] RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
-                                          const RecognizeOptions& options, const Deadline& deadline = {});
-
+[[nodiscard]] RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera,
+                                          const Database& database, const RecognizeOptions& options,
+                                          const Deadline& deadline = {});
 
 // One given pose of one model, refined and verified.
 struct RefinedPose {
@@ -52,7 +51,8 @@ void add_covariance(const RangeImage& image, const PinholeCamera& camera, const 
                     const CompiledModel& model, Detection& detection);
 
 // Judged by alpha, beta and gamma, whatever the method of the options: a pose that is given has no rivals.
-[[nodiscard]] RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& camera, const CompiledModel& model,
-                                            const Pose& T_sensor_model, const RecognizeOptions& options);
+[[nodiscard]] RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& camera,
+                                            const CompiledModel& model, const Pose& T_sensor_model,
+                                            const RecognizeOptions& options);
 
 }  // namespace foresight

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "runtime/canonical_pose.h"
+#include "runtime/interpenetration.h"
 #include "runtime/pose_check.h"
 #include "runtime/pose_evidence.h"
 #include "runtime/rendering.h"
@@ -23,6 +24,11 @@ struct Candidate {
   [[nodiscard]] const Pose& pose() const { return localization.T_sensor_model; }
 };
 
+struct AcceptedPose {
+  int model = 0;
+  Pose T_sensor_model;
+};
+
 constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
 constexpr double kRivalView = 0.9;             // of the cells a rival's start must show alike to be worth refining
 
@@ -36,6 +42,7 @@ class TwoWaySearch {
         deadline_(deadline),
         result_(result),
         labelled_(label_scan(scan.image, scan.camera, scan.database.content().sensor, scan.regions)),
+        fine_{agreeing_distance(labelled_.sensor)},
         checker_(scan.database, labelled_),
         settling_(scan.database, labelled_, settling_options(labelled_.sensor)) {}
 
@@ -60,12 +67,20 @@ class TwoWaySearch {
   [[nodiscard]] bool out_of_limits() const { return limits_reached(options_, deadline_, result_); }
   [[nodiscard]] bool uses_taken(const StartPose& start) const {
     return std::any_of(start.regions.begin(), start.regions.end(),
-                       [&](int region) { return labelled_.taken[static_cast<std::size_t>(region)]; });
+                       [&](int region) { return is_taken(labelled_, region); });
   }
   [[nodiscard]] PoseEvidence evidence(std::size_t start, const Pose& pose) const {
-    EvidenceOptions fine;
-    fine.distance = agreeing_distance(labelled_.sensor);
-    return gather_evidence(model_of(start), pose, labelled_, fine);
+    return gather_evidence(model_of(start), pose, labelled_, fine_);
+  }
+  // Whether it stands in one of the objects accepted so far, or one of them in it.
+  [[nodiscard]] bool penetrates_accepted(const Candidate& candidate) const {
+    const double depth = two_way_.penetration * fine_.distance;
+    return std::any_of(accepted_.begin(), accepted_.end(), [&](const AcceptedPose& other) {
+      const CompiledModel& a = model_of(candidate.start);
+      const CompiledModel& b = scan_.database.models()[static_cast<std::size_t>(other.model)];
+      return share_inside(a, candidate.pose(), b, other.T_sensor_model, depth) > two_way_.most_inside ||
+             share_inside(b, other.T_sensor_model, a, candidate.pose(), depth) > two_way_.most_inside;
+    });
   }
   [[nodiscard]] Rendering drawn(std::size_t start, const Pose& pose) const {
     return render(model_of(start), pose, scan_.camera);
@@ -113,6 +128,7 @@ class TwoWaySearch {
     if (candidate.probability < two_way_.accepted) return;
     prefer_near_symmetric(candidate);
     prefer_rival(candidate);
+    if (penetrates_accepted(candidate)) return;
     if (candidate.probability >= two_way_.sure) {
       accept(candidate);
     } else {
@@ -166,13 +182,8 @@ class TwoWaySearch {
     detection.score = candidate.probability;
     list_supports(starts_[candidate.start].model, reported.T_sensor_model, detection);
     detection.ambiguous_with = alternatives(candidate);
-    const PoseEvidence found = evidence(candidate.start, candidate.pose());
-    for (const int region : starts_[candidate.start].regions) labelled_.taken[static_cast<std::size_t>(region)] = true;
-    for (std::size_t r = 0; r < scan_.regions.size(); ++r) {
-      if (2 * static_cast<std::size_t>(found.explained_of_region[r]) >= scan_.regions[r].region.cells.size()) {
-        labelled_.taken[r] = true;
-      }
-    }
+    take_explained(model, candidate.pose(), fine_, labelled_);
+    accepted_.push_back({starts_[candidate.start].model, candidate.pose()});
     result_.detections.push_back(std::move(detection));
   }
 
@@ -242,7 +253,7 @@ class TwoWaySearch {
       if (uses_taken(starts_[candidate.start])) continue;
       candidate.probability =
           probability_right(model_of(candidate.start).acceptance, evidence(candidate.start, candidate.pose()));
-      if (candidate.probability >= two_way_.accepted) accept(candidate);
+      if (candidate.probability >= two_way_.accepted && !penetrates_accepted(candidate)) accept(candidate);
     }
     watch_.lap(result_.milliseconds.verify);
   }
@@ -253,10 +264,12 @@ class TwoWaySearch {
   const Deadline& deadline_;
   RecognitionResult& result_;
   LabelledScan labelled_;
+  EvidenceOptions fine_;
   PoseChecker checker_;
   PoseChecker settling_;
   std::vector<StartPose> starts_;
   std::vector<Candidate> candidates_;
+  std::vector<AcceptedPose> accepted_;
   std::map<std::vector<int>, int> tries_;  // by regions and model
   Stopwatch watch_;
 };

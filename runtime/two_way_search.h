@@ -12,13 +12,17 @@ namespace foresight {
 
 struct TwoWayOptions {
   double accepted = 0.5;  // a pose more probable than this is reported. Limit: (0, 1).
-  double sure = 0.95;     // a pose more probable than this ends the search among its rivals. Limit: (0, 1).
-  int most_tries = 3;     // starts of one model refined from the same regions, the best looking ones. Limit: >= 1.
-  // Alternatives: of the starts that rest on the same regions so many, the best looking ones, are refined as well; those
-  // that are accepted and would show the same in this share of the cells are what the view cannot tell apart.
-  int most_rivals = 12;       // Limit: >= 0.
-  double same_view = 0.95;    // Limit: 0 to 1.
-  double same_distance = 5.0; // of depths that are the same. Unit: mm. Limit: > 0.
+  double sure = 0.9;      // a pose more probable than this ends the search among its rivals. Limit: (0, 1).
+  // No two objects stand in one another: of neither's surface may more than this share lie inside the other, deeper
+  // than so many times the distance at which data agree, for either pose may be off.
+  double most_inside = 0.02;  // Limit: 0 to 1.
+  double penetration = 2.0;   // Limit: > 0.
+  int most_tries = 3;         // starts of one model refined from the same regions, the best looking ones. Limit: >= 1.
+  // Alternatives: of the starts that rest on the same regions so many, the best looking ones, are refined as well;
+  // those that are accepted and would show the same in this share of the cells are what the view cannot tell apart.
+  int most_rivals = 12;        // Limit: >= 0.
+  double same_view = 0.95;     // Limit: 0 to 1.
+  double same_distance = 5.0;  // of depths that are the same. Unit: mm. Limit: > 0.
 };
 
 // Fills detections, statistics and times. REQUIRES: check_method passes.

@@ -127,8 +127,8 @@ TEST(PoseCheck, a_region_that_is_taken_contradicts) {
   LabelledScan scan = box_scan().labelled();
   const PoseCheck free = check_of(scan, box_pose());
   double last = free.quality();
-  for (std::size_t r = 0; r < scan.taken.size(); ++r) {
-    scan.taken[r] = true;
+  for (std::size_t r = 0; r < scan.regions.size(); ++r) {
+    for (const int cell : scan.regions[r].region.cells) take(scan, cell);
     const PoseCheck check = check_of(scan, box_pose());
     EXPECT_LT(check.quality(), last);
     EXPECT_EQ(check.supports.size(), 2 - r);

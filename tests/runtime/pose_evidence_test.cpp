@@ -43,7 +43,7 @@ CompiledModel plate() {
 }
 
 void expect_counts_add_up(const PoseEvidence& e) {
-  EXPECT_EQ(e.explained + e.tilted + e.behind + e.front + e.missing, e.drawn);
+  EXPECT_EQ(e.explained + e.tilted + e.behind + e.front + e.beyond + e.missing, e.drawn);
   EXPECT_LE(e.owned, e.explained + 1e-9);
   EXPECT_LE(e.pieces_found, e.pieces);
   EXPECT_LE(e.largest, e.explained);
@@ -58,10 +58,11 @@ TEST(LabelScan, numbers_cells_by_their_region) {
   const Seen seen = box_seen();
   const LabelledScan scan = seen.labelled();
   ASSERT_EQ(seen.regions.size(), 3U);
-  EXPECT_EQ(scan.taken, std::vector<bool>(3, false));
+  EXPECT_EQ(std::count(scan.taken.begin(), scan.taken.end(), true), 0);
   for (std::size_t r = 0; r < 3; ++r) {
     EXPECT_EQ(static_cast<std::size_t>(std::count(scan.labels.begin(), scan.labels.end(), static_cast<int>(r) + 1)),
               seen.regions[r].region.cells.size());
+    EXPECT_EQ(static_cast<std::size_t>(scan.free_cells[r]), seen.regions[r].region.cells.size());
   }
 }
 
@@ -136,19 +137,66 @@ TEST(PoseEvidence, regions_that_run_on_beyond_a_face_are_not_owned) {
   }
 }
 
-TEST(PoseEvidence, a_region_of_another_object_contradicts) {
+void take_region(LabelledScan& scan, std::size_t region) {
+  for (const int cell : scan.regions[region].region.cells) take(scan, cell);
+}
+
+TEST(PoseEvidence, what_another_object_explains_contradicts) {
   const Seen seen = box_seen();
   LabelledScan scan = seen.labelled();
   const PoseEvidence free = gather_evidence(test::box_model(), test::box_pose(), scan);
-  scan.taken.assign(3, true);
+  take_region(scan, 0);
+  EXPECT_EQ(scan.free_cells[0], 0);
+  const PoseEvidence some = gather_evidence(test::box_model(), test::box_pose(), scan);
+  for (const std::size_t r : {1U, 2U}) take_region(scan, r);
   const PoseEvidence taken = gather_evidence(test::box_model(), test::box_pose(), scan);
   EXPECT_EQ(taken.drawn, free.drawn);
   EXPECT_GT(taken.tilted, 0.9 * taken.drawn);
   EXPECT_EQ(std::accumulate(taken.explained_of_region.begin(), taken.explained_of_region.end(), 0), 0);
   EXPECT_EQ(taken.pieces_found, 0);
-  scan.taken = {true, false, false};
-  EXPECT_LT(gather_evidence(test::box_model(), test::box_pose(), scan).tilted, taken.tilted);
+  EXPECT_GT(some.tilted, free.tilted);
+  EXPECT_LT(some.tilted, taken.tilted);
+  expect_counts_add_up(some);
   expect_counts_add_up(taken);
+}
+
+// Two plates of one size side by side in one plane come out as one region. What is left by the first is the other's
+// own.
+TEST(PoseEvidence, the_rest_of_a_region_is_owned_by_who_explains_it) {
+  const Seen seen(test::render({test::facing({30, 0, 900}, 120, 40)}, PinholeCamera{}));
+  ASSERT_EQ(seen.regions.size(), 1U);
+  LabelledScan scan = seen.labelled();
+  const Pose beside{Eigen::Matrix3d::Identity(), {60, 0, 0}};
+  const PoseEvidence before = gather_evidence(plate(), beside, scan);
+  EXPECT_NEAR(before.owned / before.explained, 0.5, 0.06);
+  EXPECT_FALSE(is_taken(scan, 0));
+  take_explained(plate(), {}, {}, scan);
+  EXPECT_NEAR(scan.free_cells[0], 0.5 * static_cast<double>(seen.regions[0].region.cells.size()),
+              0.03 * static_cast<double>(seen.regions[0].region.cells.size()));
+  const PoseEvidence after = gather_evidence(plate(), beside, scan);
+  EXPECT_GT(after.owned / after.explained, 0.94);
+  const PoseEvidence again = gather_evidence(plate(), {}, scan);
+  EXPECT_GT(again.tilted, 0.95 * again.drawn);
+  take_explained(plate(), beside, {}, scan);
+  EXPECT_TRUE(is_taken(scan, 0));
+  EXPECT_EQ(scan.free_cells[0], 0);  // its border, too
+}
+
+// An object that hangs over the border of the image: what lies beyond is as little seen as what is hidden.
+TEST(PoseEvidence, counts_what_lies_beyond_the_image_as_unseen) {
+  const PinholeCamera camera;
+  const double half_width = 0.5 * camera.columns * 900.0 / camera.fx;
+  const Pose over_the_border{Eigen::Matrix3d::Identity(), {half_width, 0, 0}};
+  const Seen seen(test::render({test::facing({half_width, 0, 900}, 60, 40)}, camera));
+  const PoseEvidence e = gather_evidence(plate(), over_the_border, seen.labelled());
+  EXPECT_NEAR(e.beyond, 0.5 * e.drawn, 0.04 * e.drawn);
+  EXPECT_EQ(e.explained + e.beyond, e.drawn);
+  EXPECT_NEAR(evidence_features(e)[kHiddenShare], 0.5, 0.04);
+  EXPECT_NEAR(evidence_features(e)[kMissingShare], 0.0, 1e-9);
+  expect_counts_add_up(e);
+  const PoseEvidence whole = gather_evidence(plate(), {}, seen.labelled());
+  EXPECT_EQ(whole.beyond, 0);
+  EXPECT_NEAR(whole.drawn, e.drawn, 0.05 * whole.drawn);
 }
 
 // A wall that cuts the plate at an angle has data on it, but no surface like it.
