@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/errors.h"
+#include "runtime/flush_faces.h"
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
 #include "runtime/hypothesis_cliques.h"
@@ -91,7 +92,8 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   RecognitionResult result;
   Stopwatch total;
   Stopwatch watch;
-  const auto regions = extract_regions(image, camera, database.content().segmentation);
+  auto regions = extract_regions(image, camera, database.content().segmentation);
+  if (options.method != Method::paper) regions = part_flush_faces(std::move(regions), image, camera, database);
   watch.lap(result.milliseconds.extract);
   result.statistics.regions = static_cast<int>(regions.size());
   result.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());
