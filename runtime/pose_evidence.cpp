@@ -27,6 +27,25 @@ bool inner(const Rendering& drawn, int row, int column, double step) {
   return true;
 }
 
+// Whether all that a sensor that matches windows takes the cell's depth from is drawn on one plane. A corner of the
+// window alone changes little: it reaches as far as the middles of its sides. reach: of the window. Unit: cells.
+bool amid_plane(const Rendering& drawn, int row, int column, int reach) {
+  if (row < reach || column < reach || row + reach >= drawn.rows || column + reach >= drawn.columns) return false;
+  const auto triangle = [&](int r, int c) { return drawn.triangle[static_cast<std::size_t>(drawn.cell(r, c))]; };
+  const Eigen::Vector3f& normal = drawn.normal[static_cast<std::size_t>(triangle(row, column))];
+  const auto goes_on = [&](int r, int c) {
+    constexpr float kSameNormal = 0.98F;
+    const int other = triangle(r, c);
+    return other >= 0 && drawn.normal[static_cast<std::size_t>(other)].dot(normal) >= kSameNormal;
+  };
+  for (int away = 1; away <= reach; ++away) {
+    if (!goes_on(row - away, column) || !goes_on(row + away, column) || !goes_on(row, column - away) ||
+        !goes_on(row, column + away))
+      return false;
+  }
+  return true;
+}
+
 // Whether a region that lies on the drawn surface is none of it.
 bool contradicts(const LabelledScan& scan, std::size_t region, const Eigen::Vector3d& normal,
                  const EvidenceOptions& options) {
@@ -62,8 +81,11 @@ Judgement judge(const DrawnCell& cell, const LabelledScan& scan, const EvidenceO
   if (across > options.distance) return Judgement::behind;
   if (across < -options.distance) return Judgement::front;
   const int region = scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
-  const bool tilted = region >= 0 && contradicts(scan, static_cast<std::size_t>(region), cell.normal, options);
-  return tilted ? Judgement::tilted : Judgement::explained;
+  if (region < 0 || !contradicts(scan, static_cast<std::size_t>(region), cell.normal, options))
+    return Judgement::explained;
+  // Near a steep surface, and yet another one well before it: the box that stands flush hides the side of this one.
+  const bool before = static_cast<double>(scan.image[cell.cell].z()) < cell.depth - options.distance;
+  return before ? Judgement::front : Judgement::tilted;
 }
 
 // Counts judgements. Cells at outlines count only for what regions the object explains.
@@ -176,6 +198,7 @@ PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_mo
                              const EvidenceOptions& options) {
   const Rendering drawn = render(model, T_sensor_model, scan.camera);
   Tally tally(model.triangles.size(), scan.regions.size());
+  const int reach = scan.sensor.matching_window / 2;
   for (int row = 0; row < drawn.rows; ++row) {
     for (int column = 0; column < drawn.columns; ++column) {
       const auto at = static_cast<std::size_t>(drawn.cell(row, column));
@@ -185,7 +208,8 @@ PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_mo
       // Depth changes by this much from one cell to the next.
       const double step = drawn.depth[at] / scan.camera.fx / std::max(cell.cosine, 0.05);
       tally.add(drawn.triangle[at], judge(cell, scan, options), scan.labels[static_cast<std::size_t>(cell.cell)] - 1,
-                inner(drawn, row, column, options.distance + 3.0 * step));
+                inner(drawn, row, column, options.distance + 3.0 * step) &&
+                    (reach == 0 || amid_plane(drawn, row, column, reach)));
     }
   }
   return tally.sum(scan.regions, model.triangle_faces);
