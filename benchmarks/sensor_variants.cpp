@@ -9,6 +9,7 @@ namespace foresight {
 std::vector<SensorVariant> sensor_variants(const SensorModel& sensor) {
   SensorModel bare = sensor;
   bare.depth_noise = 0.0;
+  bare.matching_window = 1;
   bare.projector.reset();
   bare.nearest_distance = bare.farthest_distance = sensor.working_distance();
   bare.largest_incidence = 0.5 * std::numbers::pi;
@@ -18,6 +19,7 @@ std::vector<SensorVariant> sensor_variants(const SensorModel& sensor) {
   };
   SensorModel noise = bare, shadow = bare, distance = bare, incidence = bare;
   noise.depth_noise = sensor.depth_noise;
+  noise.matching_window = sensor.matching_window;
   shadow.projector = sensor.projector;
   distance.nearest_distance = sensor.nearest_distance;
   distance.farthest_distance = sensor.farthest_distance;

@@ -22,7 +22,8 @@ bool operator==(const SensorModel& a, const SensorModel& b) {
   return a.name == b.name && a.camera == b.camera && a.projector == b.projector &&
          a.nearest_distance == b.nearest_distance && a.farthest_distance == b.farthest_distance &&
          a.depth_quantization == b.depth_quantization && a.depth_noise == b.depth_noise &&
-         a.largest_incidence == b.largest_incidence && a.background == b.background;
+         a.largest_incidence == b.largest_incidence && a.background == b.background &&
+         a.matching_window == b.matching_window;
 }
 
 void check(const SensorModel& sensor, const std::string& file) {
@@ -46,6 +47,9 @@ void check(const SensorModel& sensor, const std::string& file) {
           "give the standard deviation of the depth in mm, or 0");
   require(sensor.largest_incidence > 0 && sensor.largest_incidence <= 1.5707963267948967,
           "largest_incidence is outside (0, 90] degrees", "give the steepest angle at which a surface still gives data");
+  require(sensor.matching_window >= 1 && sensor.matching_window <= 31 && sensor.matching_window % 2 == 1,
+          "matching_window is " + std::to_string(sensor.matching_window) + " cells",
+          "give an odd number of cells from 1 to 31");
   require(!sensor.projector || sensor.projector->allFinite(), "the projector position is not finite", "give x, y, z in mm");
 }
 

@@ -21,6 +21,9 @@ struct SensorModel {
   double depth_noise = 0.0;          // standard deviation of z before quantization. Unit: mm. Limit: >= 0.
   double largest_incidence = 1.5707963267948966;  // steeper surfaces give no data. Unit: rad. Limit: (0, pi/2].
   bool background = false;           // whether scans show a floor or a backdrop behind the objects
+  // Side of the square of cells that each depth is taken from. Stereo cameras match windows: edges become ramps of this
+  // width, and cells nearer together err alike. Unit: cells. Limit: odd, 1 to 31.
+  int matching_window = 1;
 
   [[nodiscard]] double working_distance() const { return 0.5 * (nearest_distance + farthest_distance); }
   // Standard deviation of one depth value: noise and quantization together. Unit: mm.

@@ -25,7 +25,7 @@ constexpr int kBoxes = 6;               // among them
 constexpr double kSmallestSide = 0.15;  // of a box, as a share of the object's diameter
 constexpr double kLargestSide = 1.2;
 constexpr std::uint64_t kBoxStream = ~std::uint64_t{0};  // of random numbers; scenes use the low ones
-constexpr double kSameDistance = 5.0;                    // of cells that show the same. Unit: mm.
+constexpr double kSameDistance = 5.0;                    // of cells that show the same, at least. Unit: mm.
 constexpr double kRightShare = 0.9;                      // of the cells of poses that show the same: right
 constexpr double kWrongShare = 0.8;                      // fewer show the same: wrong; between them nothing is learnt
 constexpr double kNearShare = 0.5;                       // of a start that is worth refining here: show the same
@@ -132,10 +132,10 @@ struct PosedModel {
   const Pose& T_sensor_model;
 };
 
-// The share of the cells showing either, each alone, that show the same surface.
-double same_share(const PosedModel& a, const PosedModel& b, const PinholeCamera& camera) {
-  return same_share(render(a.model, a.T_sensor_model, camera), render(b.model, b.T_sensor_model, camera),
-                    kSameDistance);
+// The share of the cells showing either, each alone, that show the same surface as far as the sensor can tell.
+double same_share(const PosedModel& a, const PosedModel& b, const SensorModel& sensor) {
+  return same_share(render(a.model, a.T_sensor_model, sensor.camera), render(b.model, b.T_sensor_model, sensor.camera),
+                    std::max(kSameDistance, agreeing_distance(sensor)), sensor.matching_window / 2);
 }
 
 // The pose moved and turned about the object's centre.
@@ -188,7 +188,7 @@ class SceneTeacher {
     for (std::size_t i = 0; i < most; ++i) {
       const StartPose& start = starts[i];
       const PosedModel posed{model_, start.T_sensor_model};
-      const bool is_near = truth_ && same_share(posed, {model_, *truth_}, context_.camera) >= kNearShare;
+      const bool is_near = truth_ && same_share(posed, {model_, *truth_}, labelled_.sensor) >= kNearShare;
       if (!is_near) wrong.push_back(i);
       if (!is_near || i >= last_right || ++near > options.most_near) continue;
       const bool first = lessons_.qualities.empty();
@@ -230,7 +230,7 @@ class SceneTeacher {
     EvidenceOptions fine;
     fine.distance = agreeing_distance(labelled_.sensor);
     const PosedModel posed{model_, pose};
-    const double share = truth_ ? same_share(posed, {model_, *truth_}, context_.camera) : 0.0;
+    const double share = truth_ ? same_share(posed, {model_, *truth_}, labelled_.sensor) : 0.0;
     const bool right = share >= kRightShare;
     if (right || is_wrong(posed, share)) {
       const Features features = evidence_features(gather_evidence(model_, pose, labelled_, fine));
@@ -244,7 +244,7 @@ class SceneTeacher {
   bool is_wrong(const PosedModel& posed, double share) const {
     if (share >= kWrongShare || (present_ && !truth_)) return false;
     return std::all_of(impostors_.begin(), impostors_.end(), [&](const auto& impostor) {
-      return same_share(posed, {impostor.first, impostor.second}, context_.camera) < kWrongShare;
+      return same_share(posed, {impostor.first, impostor.second}, labelled_.sensor) < kWrongShare;
     });
   }
 

@@ -35,6 +35,8 @@ void fill(v1::SensorModel& message, const SensorModel& sensor) {
   message.set_depth_noise_mm(sensor.depth_noise);
   message.set_largest_incidence_rad(sensor.largest_incidence);
   message.set_background(sensor.background);
+  // 1 is what a reader takes an absent one for: databases of other sensors keep their bytes.
+  if (sensor.matching_window != 1) message.set_matching_window_cells(sensor.matching_window);
 }
 
 void fill(v1::SegmentationOptions& message, const SegmentationOptions& options) {

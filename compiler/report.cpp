@@ -35,6 +35,7 @@ Json sensor_json(const SensorModel& sensor) {
                {"largest_incidence_rad", sensor.largest_incidence},
                {"background", sensor.background}};
   if (sensor.projector) json["projector_mm"] = {sensor.projector->x(), sensor.projector->y(), sensor.projector->z()};
+  if (sensor.matching_window != 1) json["matching_window_cells"] = sensor.matching_window;
   return json;
 }
 

@@ -94,6 +94,62 @@ double float_margin(const Vector3d& point) { return std::max(1e-3, 2e-6 * point.
 
 double quantized(double z, double step) { return step > 0.0 ? std::round(z / step) * step : z; }
 
+// Sums over windows of the image in constant time each.
+class WindowSums {
+ public:
+  WindowSums(const std::vector<double>& values, int rows, int columns)
+      : rows_(rows), columns_(columns), sums_(static_cast<std::size_t>((rows + 1) * (columns + 1)), 0.0) {
+    for (int row = 0; row < rows; ++row) {
+      double of_row = 0.0;
+      for (int column = 0; column < columns; ++column) {
+        of_row += values[static_cast<std::size_t>(row * columns + column)];
+        sums_[at(row + 1, column + 1)] = sums_[at(row, column + 1)] + of_row;
+      }
+    }
+  }
+  // Of the cells inside the image among those at most `reach` rows and columns away.
+  [[nodiscard]] double around(int row, int column, int reach) const {
+    const int top = std::max(0, row - reach);
+    const int left = std::max(0, column - reach);
+    const int bottom = std::min(rows_, row + reach + 1);
+    const int right = std::min(columns_, column + reach + 1);
+    return sums_[at(bottom, right)] - sums_[at(top, right)] - sums_[at(bottom, left)] + sums_[at(top, left)];
+  }
+
+ private:
+  [[nodiscard]] std::size_t at(int row, int column) const {
+    return static_cast<std::size_t>(row * (columns_ + 1) + column);
+  }
+  int rows_, columns_;
+  std::vector<double> sums_;  // of all cells above and to the left of a grid point
+};
+
+// What a sensor that matches windows makes of exact depths (0 = no data) and of white noise of deviation 1: means over
+// the data of a window, of 1 / z, which such a sensor measures and of which planes stay planes; and noise of the same
+// deviation that neighbouring cells share.
+void match_windows(const SensorModel& sensor, std::vector<double>& depths, std::vector<double>& noise) {
+  const PinholeCamera& camera = sensor.camera;
+  const int reach = sensor.matching_window / 2;
+  std::vector<double> inverse(depths.size(), 0.0);
+  std::vector<double> has_data(depths.size(), 0.0);
+  for (std::size_t cell = 0; cell < depths.size(); ++cell) {
+    if (!(depths[cell] > 0.0)) continue;
+    inverse[cell] = 1.0 / depths[cell];
+    has_data[cell] = 1.0;
+  }
+  const WindowSums inverses(inverse, camera.rows, camera.columns);
+  const WindowSums data(has_data, camera.rows, camera.columns);
+  const WindowSums white(noise, camera.rows, camera.columns);
+  const WindowSums cells(std::vector<double>(depths.size(), 1.0), camera.rows, camera.columns);
+  for (int row = 0; row < camera.rows; ++row) {
+    for (int column = 0; column < camera.columns; ++column) {
+      const auto cell = static_cast<std::size_t>(row * camera.columns + column);
+      noise[cell] = white.around(row, column, reach) / std::sqrt(cells.around(row, column, reach));
+      if (depths[cell] > 0.0) depths[cell] = data.around(row, column, reach) / inverses.around(row, column, reach);
+    }
+  }
+}
+
 }  // namespace
 
 struct SimulatedScene::Impl {
@@ -205,16 +261,28 @@ SimulatedScan SimulatedScene::scan(const SensorModel& sensor, Random random) con
   const PinholeCamera& camera = sensor.camera;
   SimulatedScan scan{RangeImage(camera.rows, camera.columns), {}};
   scan.labels.resize(scan.image.points.size());
+  std::vector<double> depths(scan.image.points.size(), 0.0);  // by cell, 0 = no data
+  std::vector<double> noise(scan.image.points.size(), 0.0);   // in standard deviations
   for (int row = 0; row < camera.rows; ++row) {
     for (int column = 0; column < camera.columns; ++column) {
+      const auto cell = static_cast<std::size_t>(scan.image.cell(row, column));
       // One draw for every cell, seen or not: a cell's noise does not depend on what the others show.
-      const double noise = sensor.depth_noise > 0.0 ? sensor.depth_noise * random.gaussian() : 0.0;
+      if (sensor.depth_noise > 0.0) noise[cell] = random.gaussian();
       const Vector3d ray = camera.ray(row, column);
       const std::optional<SurfaceHit> hit = impl_->nearest(Vector3d::Zero(), ray);
       if (!hit || !impl_->gives_data(*hit, ray, sensor)) continue;
+      depths[cell] = hit->t;
+      scan.labels[cell] = hit->label;
+    }
+  }
+  if (sensor.matching_window > 1) match_windows(sensor, depths, noise);
+  for (int row = 0; row < camera.rows; ++row) {
+    for (int column = 0; column < camera.columns; ++column) {
       const int cell = scan.image.cell(row, column);
-      scan.image[cell] = (quantized(hit->t + noise, sensor.depth_quantization) * ray).cast<float>();
-      scan.labels[static_cast<std::size_t>(cell)] = hit->label;
+      const auto at = static_cast<std::size_t>(cell);
+      if (!(depths[at] > 0.0)) continue;
+      const double measured = depths[at] + sensor.depth_noise * noise[at];
+      scan.image[cell] = (quantized(measured, sensor.depth_quantization) * camera.ray(row, column)).cast<float>();
     }
   }
   return scan;

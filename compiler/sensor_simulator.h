@@ -46,7 +46,8 @@ class SimulatedScene {
   SimulatedScene(SimulatedScene&&) noexcept;
   SimulatedScene& operator=(SimulatedScene&&) noexcept;
 
-  // One range image: a ray through each cell's centre; z with noise, then quantized; no data where the sensor sees none
+  // One range image: a ray through each cell's centre; z with noise, over windows where
+  // the sensor matches such, then quantized; no data where the sensor sees none
   // (nothing hit, projector shadow, grazing incidence). Same scene, sensor and seed: same bits.
   [[nodiscard]] SimulatedScan scan(const SensorModel& sensor, Random random) const;
 

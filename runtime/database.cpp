@@ -40,6 +40,7 @@ SensorModel from_message(const v1::SensorModel& message) {
   sensor.largest_incidence = message.has_largest_incidence_deg() ? message.largest_incidence_deg() / 90.0 * kRightAngle
                                                                  : message.largest_incidence_rad();
   sensor.background = message.background();
+  if (message.matching_window_cells() != 0) sensor.matching_window = message.matching_window_cells();
   return sensor;
 }
 

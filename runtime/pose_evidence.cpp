@@ -28,6 +28,25 @@ bool inner(const Rendering& drawn, int row, int column, double step) {
   return true;
 }
 
+// Whether all that a sensor that matches windows takes the cell's depth from is drawn on one plane. A corner of the
+// window alone changes little: it reaches as far as the middles of its sides. reach: of the window. Unit: cells.
+bool amid_plane(const Rendering& drawn, int row, int column, int reach) {
+  if (row < reach || column < reach || row + reach >= drawn.rows || column + reach >= drawn.columns) return false;
+  const auto triangle = [&](int r, int c) { return drawn.triangle[static_cast<std::size_t>(drawn.cell(r, c))]; };
+  const Eigen::Vector3f& normal = drawn.normal[static_cast<std::size_t>(triangle(row, column))];
+  const auto goes_on = [&](int r, int c) {
+    constexpr float kSameNormal = 0.98F;
+    const int other = triangle(r, c);
+    return other >= 0 && drawn.normal[static_cast<std::size_t>(other)].dot(normal) >= kSameNormal;
+  };
+  for (int away = 1; away <= reach; ++away) {
+    if (!goes_on(row - away, column) || !goes_on(row + away, column) || !goes_on(row, column - away) ||
+        !goes_on(row, column + away))
+      return false;
+  }
+  return true;
+}
+
 // A cell of the image in which the object is drawn.
 struct DrawnCell {
   int cell = 0;        // of the image, -1 beyond it
@@ -65,9 +84,12 @@ Judgement judge(const DrawnCell& cell, const LabelledScan& scan, const EvidenceO
   if (across < -options.distance) return Judgement::front;
   if (scan.taken[static_cast<std::size_t>(cell.cell)]) return Judgement::tilted;
   const int region = scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
-  const bool tilted = region >= 0 && scan.regions[static_cast<std::size_t>(region)].region.normal.dot(cell.normal) <
-                                         options.normal_cosine;
-  return tilted ? Judgement::tilted : Judgement::explained;
+  if (region < 0 ||
+      scan.regions[static_cast<std::size_t>(region)].region.normal.dot(cell.normal) >= options.normal_cosine)
+    return Judgement::explained;
+  // Near a steep surface, and yet another one well before it: the box that stands flush hides the side of this one.
+  const bool before = static_cast<double>(scan.image[cell.cell].z()) < cell.depth - options.distance;
+  return before ? Judgement::front : Judgement::tilted;
 }
 
 // Calls visit(cell, judgement, inner) for each cell that would show the object, row by row.
@@ -75,6 +97,7 @@ template <typename Visit>
 void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,
                    const EvidenceOptions& options, const Visit& visit) {
   const Rendering drawn = render(model, T_sensor_model, scan.camera, std::max(scan.image.rows, scan.image.columns));
+  const int reach = scan.sensor.matching_window / 2;
   for (int row = 0; row < drawn.rows; ++row) {
     for (int column = 0; column < drawn.columns; ++column) {
       const auto at = static_cast<std::size_t>(drawn.cell(row, column));
@@ -83,7 +106,9 @@ void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const
       if (cell.cosine <= std::cos(scan.sensor.largest_incidence)) continue;  // the sensor gives no data here
       // Depth changes by this much from one cell to the next.
       const double step = drawn.depth[at] / scan.camera.fx / std::max(cell.cosine, 0.05);
-      visit(cell, judge(cell, scan, options), inner(drawn, row, column, options.distance + 3.0 * step));
+      const bool whole = inner(drawn, row, column, options.distance + 3.0 * step) &&
+                         (reach == 0 || amid_plane(drawn, row, column, reach));
+      visit(cell, judge(cell, scan, options), whole);
     }
   }
 }

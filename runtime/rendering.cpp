@@ -126,26 +126,44 @@ Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const P
   return rendering;
 }
 
-double same_share(const Rendering& a, const Rendering& b, double distance) {
-  const auto depth_at_b = [&](int row, int column) {
-    row += a.first_row - b.first_row;
-    column += a.first_column - b.first_column;
-    if (row < 0 || row >= b.rows || column < 0 || column >= b.columns) return 0.0F;
-    return b.depth[static_cast<std::size_t>(b.cell(row, column))];
+namespace {
+
+// Cells of `a` that show something, and those at which `b` shows the same within `reach` cells.
+std::pair<long, long> shown_and_same(const Rendering& a, const Rendering& b, double distance, int reach) {
+  const auto same_at = [&](int row, int column, float depth) {
+    if (row < 0 || column < 0 || row >= b.rows || column >= b.columns) return false;
+    const float other = b.depth[static_cast<std::size_t>(b.cell(row, column))];
+    return other > 0.0F && std::abs(static_cast<double>(other - depth)) <= distance;
   };
-  int shown_by_a = 0;
-  int same = 0;
+  const auto same_around = [&](int row, int column, float depth) {
+    if (same_at(row, column, depth)) return true;
+    for (int r = row - reach; r <= row + reach; ++r) {
+      for (int c = column - reach; c <= column + reach; ++c) {
+        if (same_at(r, c, depth)) return true;
+      }
+    }
+    return false;
+  };
+  long shown = 0;
+  long same = 0;
   for (int row = 0; row < a.rows; ++row) {
     for (int column = 0; column < a.columns; ++column) {
       const float depth = a.depth[static_cast<std::size_t>(a.cell(row, column))];
       if (!(depth > 0.0F)) continue;
-      ++shown_by_a;
-      const float other = depth_at_b(row, column);
-      same += other > 0.0F && std::abs(static_cast<double>(other - depth)) <= distance ? 1 : 0;
+      ++shown;
+      same += same_around(row + a.first_row - b.first_row, column + a.first_column - b.first_column, depth) ? 1 : 0;
     }
   }
-  const auto shown_by_b = std::count_if(b.depth.begin(), b.depth.end(), [](float z) { return z > 0.0F; });
-  const double either = shown_by_a + static_cast<double>(shown_by_b) - same;
+  return {shown, same};
+}
+
+}  // namespace
+
+double same_share(const Rendering& a, const Rendering& b, double distance, int reach) {
+  const auto [shown_by_a, same_in_a] = shown_and_same(a, b, distance, reach);
+  const auto [shown_by_b, same_in_b] = shown_and_same(b, a, distance, reach);
+  const double same = 0.5 * static_cast<double>(same_in_a + same_in_b);
+  const double either = static_cast<double>(shown_by_a + shown_by_b) - same;
   return either > 0.0 ? same / either : 0.0;
 }
 

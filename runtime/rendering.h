@@ -30,7 +30,7 @@ struct Rendering {
                                int beyond = 0);
 
 // Of the cells that either shows, the share that show the same: both depths are there and differ by no more than this.
-// distance: Unit: mm.
-[[nodiscard]] double same_share(const Rendering& a, const Rendering& b, double distance);
+// distance: Unit: mm. reach: how far aside in the image the same depth may be, for sensors that match windows of cells.
+[[nodiscard]] double same_share(const Rendering& a, const Rendering& b, double distance, int reach = 0);
 
 }  // namespace foresight

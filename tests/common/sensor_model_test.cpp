@@ -70,6 +70,7 @@ TEST(SensorModel, equality_compares_every_field) {
       [](SensorModel& s) { s.depth_noise = 1; },
       [](SensorModel& s) { s.largest_incidence = 1; },
       [](SensorModel& s) { s.background = true; },
+      [](SensorModel& s) { s.matching_window = 3; },
   };
   EXPECT_TRUE(SensorModel{} == SensorModel{});
   for (const auto& change : changes) {
@@ -103,6 +104,9 @@ TEST(SensorModel, check_refuses_every_field_outside_its_limits) {
       [](SensorModel& s) { s.depth_noise = -0.1; },
       [](SensorModel& s) { s.depth_noise = kInfinity; },
       [](SensorModel& s) { s.largest_incidence = 0; },
+      [](SensorModel& s) { s.matching_window = 0; },
+      [](SensorModel& s) { s.matching_window = 4; },
+      [](SensorModel& s) { s.matching_window = 33; },
       [](SensorModel& s) { s.largest_incidence = std::numbers::pi / 2 + 1e-6; },
       [](SensorModel& s) { s.largest_incidence = kNan; },
       [](SensorModel& s) { s.projector = Eigen::Vector3d(0, kNan, 0); },

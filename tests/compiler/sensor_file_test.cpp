@@ -34,7 +34,8 @@ void expect_error(const std::string& text, const std::string& part) {
 TEST(SensorFile, reads_every_field_in_its_unit) {
   const SensorModel sensor = parse_sensor(kSmallest +
                                               "projector_mm { x: 1 y: -2 z: 3 } depth_quantization_mm: 0.25\n"
-                                              "depth_noise_mm: 0.5 background: true  # a comment",
+                                              "depth_noise_mm: 0.5 background: true  # a comment\n"
+                                              "matching_window_cells: 9",
                                           "s");
   SensorModel expected;
   expected.name = "s";
@@ -46,6 +47,7 @@ TEST(SensorFile, reads_every_field_in_its_unit) {
   expected.depth_noise = 0.5;
   expected.largest_incidence = sensor.largest_incidence;
   expected.background = true;
+  expected.matching_window = 9;
   EXPECT_EQ(sensor, expected);
   EXPECT_NEAR(sensor.largest_incidence, 1.0471975511965976, 1e-15);
 }
@@ -56,6 +58,7 @@ TEST(SensorFile, takes_left_out_fields_as_none) {
   EXPECT_EQ(sensor.depth_quantization, 0.0);
   EXPECT_EQ(sensor.depth_noise, 0.0);
   EXPECT_FALSE(sensor.background);
+  EXPECT_EQ(sensor.matching_window, 1);
 }
 
 TEST(SensorFile, paper_sensor_is_what_its_file_says) {
@@ -141,6 +144,8 @@ TEST(SensorFile, refuses_values_outside_their_limits) {
   expect_error(replaced("deg: 60", "deg: 91"), "incidence");
   expect_error(replaced("deg: 60", "deg: -1"), "incidence");
   expect_error(kSmallest + "depth_noise_mm: -1", "depth_noise");
+  expect_error(kSmallest + "matching_window_cells: 4", "matching_window");
+  expect_error(kSmallest + "matching_window_cells: -3", "matching_window");
   expect_error(kSmallest + "depth_quantization_mm: -1", "depth_quantization");
   expect_error(kSmallest + "projector_mm { z: nan }", "projector");
   EXPECT_EQ(error_of(replaced("deg: 60", "deg: 90")), "");

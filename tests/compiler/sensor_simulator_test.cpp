@@ -155,6 +155,77 @@ TEST(SensorSimulator, noise_has_the_stated_deviation_and_depends_on_the_seed) {
   EXPECT_FALSE(same_bits(scan, scene.scan(sensor, Random(4))));
 }
 
+// Errors of neighbours along rows, as a share of the variance, for a flat wall.
+double correlation(const RangeImage& image, int lag) {
+  double products = 0.0;
+  double squares = 0.0;
+  int pairs = 0;
+  for (int row = 0; row < image.rows; ++row) {
+    for (int column = 0; column + lag < image.columns; ++column, ++pairs) {
+      const double error = static_cast<double>(image[image.cell(row, column)].z()) - 900.0;
+      products += error * (static_cast<double>(image[image.cell(row, column + lag)].z()) - 900.0);
+      squares += error * error;
+    }
+  }
+  return pairs == 0 ? 0.0 : products / squares;
+}
+
+TEST(SensorSimulator, cells_of_one_matching_window_err_alike) {
+  SensorModel sensor = exact_sensor();
+  sensor.camera = {200, 300, 400, 400, 149.5, 99.5};
+  sensor.depth_noise = 0.7;
+  const BackgroundPlane wall{Vector3d(0, 0, -1), -900};
+  const SimulatedScene scene({}, {&wall, 1});
+  for (const int window : {1, 5, 9}) {
+    sensor.matching_window = window;
+    const RangeImage image = scene.scan(sensor, Random(3)).image;
+    double squares = 0.0;
+    for (const auto& point : image.points) squares += std::pow(static_cast<double>(point.z()) - 900.0, 2);
+    EXPECT_NEAR(std::sqrt(squares / image.size()), 0.7, 0.07) << window;
+    for (const int lag : {1, 2, 4, 12}) {
+      EXPECT_NEAR(correlation(image, lag), std::max(0.0, 1.0 - static_cast<double>(lag) / window), 0.12)
+          << window << " " << lag;
+    }
+  }
+}
+
+TEST(SensorSimulator, matching_windows_leave_planes_and_make_ramps_of_steps) {
+  SensorModel sensor = exact_sensor();
+  const CadModel model = box(60, 60, 10);
+  const PlacedObject object{&model, at({-30, -30, 900})};
+  const BackgroundPlane wall{Vector3d(0.3, 0, -1).normalized(), -1000};
+  const SimulatedScene scene({&object, 1}, {&wall, 1});
+  const SimulatedScan sharp = scene.scan(sensor, Random(3));
+  sensor.matching_window = 5;
+  const SimulatedScan smooth = scene.scan(sensor, Random(3));
+  int unlike = 0;
+  for (int row = 0; row < sharp.image.rows; ++row) {
+    for (int column = 0; column < sharp.image.columns; ++column) {
+      const int cell = sharp.image.cell(row, column);
+      const auto at_cell = static_cast<std::size_t>(cell);
+      EXPECT_EQ(sharp.image.valid(cell), smooth.image.valid(cell));
+      EXPECT_EQ(sharp.labels[at_cell].face, smooth.labels[at_cell].face);
+      if (!sharp.image.valid(cell) || row < 2 || column < 2 || row + 2 >= sharp.image.rows ||
+          column + 2 >= sharp.image.columns)
+        continue;
+      bool amid = true;
+      for (int r = row - 2; r <= row + 2; ++r) {
+        for (int c = column - 2; c <= column + 2; ++c) {
+          const auto& other = sharp.labels[static_cast<std::size_t>(sharp.image.cell(r, c))];
+          amid = amid && other.object == sharp.labels[at_cell].object && other.face == sharp.labels[at_cell].face;
+        }
+      }
+      const double off = std::abs(static_cast<double>(sharp.image[cell].z() - smooth.image[cell].z()));
+      if (amid) {
+        EXPECT_LT(off, 0.01) << row << " " << column;
+      } else {
+        unlike += off > 1.0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(unlike, 50);
+}
+
 TEST(SensorSimulator, noise_of_a_cell_does_not_depend_on_other_cells) {
   SensorModel sensor = exact_sensor();
   sensor.depth_noise = 0.7;

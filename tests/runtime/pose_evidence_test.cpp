@@ -217,6 +217,37 @@ TEST(PoseEvidence, a_region_with_another_normal_contradicts) {
   expect_counts_add_up(steep);
 }
 
+// What stands flush with a box hides its side, though near the edge its surface is near that of the side.
+TEST(PoseEvidence, another_surface_well_before_a_steep_one_hides_it) {
+  const Eigen::Matrix3d steep = rotation_from_vector({0, 1.3, 0});
+  const Vector3d centre(0, 0, 900);
+  const Pose pose{steep, centre - steep * centre};
+  // Across the steep plate 12 mm are less than 4.
+  const Seen seen(test::render({test::facing({0, 0, 888}, 200, 200)}, PinholeCamera{}));
+  const PoseEvidence e = gather_evidence(plate(), pose, seen.labelled());
+  EXPECT_GT(e.front, 10);
+  for (const double before : {6.0, 12.0}) {
+    const Seen nearer(test::render({test::facing({0, 0, 870 - before}, 200, 200)}, PinholeCamera{}));
+    const PoseEvidence hidden = gather_evidence(plate(), pose, nearer.labelled());
+    EXPECT_EQ(hidden.front, hidden.drawn);
+    EXPECT_EQ(hidden.tilted, 0);
+  }
+}
+
+// Their depths are means of what lies on either side.
+TEST(PoseEvidence, cells_near_outlines_do_not_count_for_sensors_that_match_windows) {
+  Seen seen = box_seen();
+  int last = box_evidence(seen).drawn;
+  for (const int window : {3, 5, 9}) {
+    seen.sensor.matching_window = window;
+    const PoseEvidence e = box_evidence(seen);
+    EXPECT_LT(e.drawn, last) << window;
+    EXPECT_EQ(e.explained, e.drawn) << window;
+    last = e.drawn;
+    expect_counts_add_up(e);
+  }
+}
+
 // Along the ray, a step across a slanting surface is longer.
 TEST(PoseEvidence, data_agree_within_the_distance_across_the_surface) {
   for (const double angle : {0.0, 0.5, 1.0}) {

@@ -204,6 +204,20 @@ TEST(SameShare, counts_the_cells_both_show_of_those_either_shows) {
   EXPECT_NEAR(same_share(left, within, 1.0), 0.5, 0.03);
 }
 
+TEST(SameShare, grows_with_the_reach_of_a_sensor_that_matches_windows) {
+  const PinholeCamera camera;
+  const Rendering narrow = render(rectangle({0, 0, 900}, 60, 50), {}, camera);
+  const Rendering wide = render(rectangle({0, 0, 900}, 70, 50), {}, camera);  // by 4 cells at either side
+  double last = 0.0;
+  for (const int reach : {0, 2, 5}) {
+    const double share = same_share(narrow, wide, 1.0, reach);
+    EXPECT_EQ(share, same_share(wide, narrow, 1.0, reach));
+    EXPECT_GT(share, last);
+    last = share;
+  }
+  EXPECT_EQ(last, 1.0);
+}
+
 TEST(SameShare, depths_are_the_same_within_the_distance) {
   const PinholeCamera camera;
   const Rendering near = render(rectangle({0, 0, 900}, 60, 50), {}, camera);

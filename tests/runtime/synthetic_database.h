@@ -77,6 +77,7 @@ inline CompiledDatabase synthetic_database() {
   database.sensor.depth_noise = 0.7;
   database.sensor.largest_incidence = 1.2345678901234567;
   database.sensor.background = true;
+  database.sensor.matching_window = 5;
   database.segmentation.plane_sigma = 0.37;
   database.segmentation.merge_tolerance = 1.75;
   database.segmentation.grow_tolerance = 2.5;
