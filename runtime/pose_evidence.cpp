@@ -87,8 +87,10 @@ Judgement judge(const DrawnCell& cell, const LabelledScan& scan, const EvidenceO
   if (region < 0 ||
       scan.regions[static_cast<std::size_t>(region)].region.normal.dot(cell.normal) >= options.normal_cosine)
     return Judgement::explained;
-  // Near a steep surface, and yet another one well before it: the box that stands flush hides the side of this one.
-  const bool before = static_cast<double>(scan.image[cell.cell].z()) < cell.depth - options.distance;
+  // A sensor that matches windows draws a step as a ramp. Data near a steep surface and yet, along the ray, well before
+  // it are those of the box that stands flush and hides the side of this one.
+  const bool before =
+      scan.sensor.matching_window > 1 && static_cast<double>(scan.image[cell.cell].z()) < cell.depth - options.distance;
   return before ? Judgement::front : Judgement::tilted;
 }
 
