@@ -12,6 +12,7 @@ if(FORESIGHT_BUILD_COMPILER)
   install(TARGETS foresightc RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT compiler)
   install(DIRECTORY models/ DESTINATION ${data_dir}/models COMPONENT compiler
     FILES_MATCHING PATTERN "*.off" PATTERN "*.textproto")
+  install(DIRECTORY scripts/farm/ DESTINATION ${data_dir}/farm COMPONENT compiler USE_SOURCE_PERMISSIONS)
 endif()
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/foresight COMPONENT development)
 install(DIRECTORY schema/foresight DESTINATION ${data_dir}/schema COMPONENT development FILES_MATCHING PATTERN "*.proto")

@@ -18,3 +18,13 @@ endfunction()
 
 # Programs link protobuf-lite unless they need the text format: one of the two, never both, in a process.
 define_property(TARGET PROPERTY FORESIGHT_FULL_PROTOBUF BRIEF_DOCS "Link full Protocol Buffers instead of the lite library")
+
+# Programs that no shared library is loaded for. foresight_linked: what stands in a list of libraries for one of two.
+define_property(TARGET PROPERTY FORESIGHT_STATIC BRIEF_DOCS "Link static libraries only")
+function(foresight_linked result shared static)
+  set(${result} "$<IF:$<BOOL:$<TARGET_PROPERTY:FORESIGHT_STATIC>>,${static},${shared}>" PARENT_SCOPE)
+endfunction()
+function(foresight_link_statically name)
+  set_target_properties(${name} PROPERTIES FORESIGHT_STATIC ON)
+  target_link_options(${name} PRIVATE -static -Wl,--gc-sections)
+endfunction()

@@ -51,7 +51,7 @@ CadModel read_checked(const std::string& file, const std::string& unit, const Se
 
 // What the runtime takes for a name, see runtime/database_check.cpp.
 void check_name(const std::string& name) {
-  const bool plain = std::none_of(name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; });
+  const bool plain = std::none_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; });
   if (plain && !name.empty() && name.size() <= 1000) return;
   throw UsageError("--name", "an object's name is empty, longer than 1000 bytes or has control characters", "name the object in plain text");
 }

@@ -56,7 +56,7 @@ bool are_indices(const std::vector<int>& indices, std::size_t count) {
 }
 
 bool is_name(const std::string& name) {
-  const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; };
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
   return !name.empty() && name.size() <= kLongestName && std::none_of(name.begin(), name.end(), is_control);
 }
 
