@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "common/errors.h"
-#include "runtime/flush_faces.h"
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
 #include "runtime/pose_covariance.h"
@@ -118,8 +117,7 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   Stopwatch total;
   Stopwatch watch;
   double ignored = 0.0;  // the searches time their own stages
-  auto regions = extract_regions(image, camera, database.content().segmentation);
-  if (options.method != Method::paper) regions = part_flush_faces(std::move(regions), image, camera, database);
+  const auto regions = extract_regions(image, camera, database.content().segmentation);
   watch.lap(result.milliseconds.extract);
   result.statistics.regions = static_cast<int>(regions.size());
   result.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());

@@ -223,11 +223,13 @@ TEST(PoseEvidence, another_surface_well_before_a_steep_one_hides_it) {
   const Vector3d centre(0, 0, 900);
   const Pose pose{steep, centre - steep * centre};
   // Across the steep plate 12 mm are less than 4.
-  const Seen seen(test::render({test::facing({0, 0, 888}, 200, 200)}, PinholeCamera{}));
+  Seen seen(test::render({test::facing({0, 0, 888}, 200, 200)}, PinholeCamera{}));
+  seen.sensor.matching_window = 3;
   const PoseEvidence e = gather_evidence(plate(), pose, seen.labelled());
   EXPECT_GT(e.front, 10);
   for (const double before : {6.0, 12.0}) {
-    const Seen nearer(test::render({test::facing({0, 0, 870 - before}, 200, 200)}, PinholeCamera{}));
+    Seen nearer(test::render({test::facing({0, 0, 870 - before}, 200, 200)}, PinholeCamera{}));
+    nearer.sensor.matching_window = 3;
     const PoseEvidence hidden = gather_evidence(plate(), pose, nearer.labelled());
     EXPECT_EQ(hidden.front, hidden.drawn);
     EXPECT_EQ(hidden.tilted, 0);
