@@ -23,8 +23,8 @@ struct ModelFace {
   double offset = 0.0;                                 // normal . p = offset. Unit: mm.
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // of the whole face. Unit: mm.
   double area = 0.0;                                   // Unit: mm^2.
-  int views_found = 0;                                 // sample views in which extraction found it: P(M) before normalisation
-  std::array<Density, kAttributeCount> densities;      // P(f^k|M), empty when views_found == 0
+  int views_found = 0;  // sample views in which extraction found it: P(M) before normalisation
+  std::array<Density, kAttributeCount> densities;  // P(f^k|M), empty when views_found == 0
 };
 
 // P(f|M_l, M_m) of two faces seen together; first < second.
@@ -38,15 +38,15 @@ struct FacePair {
 struct TemplatePoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  // model frame. Unit: mm.
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();    // of the first face in the list
-  std::vector<int> faces;                              // faces the point belongs to, ascending; an edge point has two or more
-  std::vector<int> neighbours;                         // N_i of Section V.C, ascending
+  std::vector<int> faces;       // faces the point belongs to, ascending; an edge point has two or more
+  std::vector<int> neighbours;  // N_i of Section V.C, ascending
 };
 
 // The 3DTM model of Section V.A.
 struct SurfaceTemplate {
-  double spacing = 5.0;                                          // no two points are nearer than this. Unit: mm.
+  double spacing = 5.0;  // no two points are nearer than this. Unit: mm.
   std::vector<TemplatePoint> points;
-  std::array<std::vector<int>, kAspectCells> aspects;            // faces visible from each cell of ViewingSphere(80), ascending
+  std::array<std::vector<int>, kAspectCells> aspects;  // faces visible from each cell of ViewingSphere(80), ascending
 };
 
 // What two-way verification counts: the inputs of an AcceptanceModel, each from 0 to 1 (runtime/pose_evidence.h).
@@ -54,7 +54,7 @@ enum EvidenceFeature : int {
   kOwnedShare = 0,     // explained cells, weighted by the share of their regions, of those with data on or behind
   kContradictedShare,  // cells with data behind the surface or of another orientation, of those not hidden
   kMissingShare,       // cells without data, of those not hidden
-  kHiddenShare,        // cells with data before the surface
+  kHiddenShare,        // cells with data before the surface, or beyond the image
   kFoundPieces,        // triangles at least half explained, of those with data
   kAmount,             // how much there is to go by: towards 1 with the number of owned cells
   kOtherSurfaces,      // explained cells that are not of the surface with most of them
@@ -62,15 +62,15 @@ enum EvidenceFeature : int {
 };
 inline constexpr int kEvidenceFeatureCount = 8;
 
-// How probable it is that a pose with this evidence is right: a logistic model that the compiler fits to simulated right
-// and wrong poses of the object.
+// How probable it is that a pose with this evidence is right: a logistic model that the compiler fits to simulated
+// right and wrong poses of the object.
 struct AcceptanceModel {
   std::array<double, kEvidenceFeatureCount> weights{};
   double bias = 0.0;
   // Of start poses, before localization: below these none came to a right pose. Limit: 0 to 1.
   double least_quality = 0.0;      // PoseCheck::quality
   double least_probability = 0.0;  // by this model, of the evidence there
-  int samples = 0;  // simulated poses it was fitted to; 0: none, a database without acceptance models
+  int samples = 0;                 // simulated poses it was fitted to; 0: none, a database without acceptance models
 };
 
 inline constexpr int kMostExactSymmetries = 512;  // of one model: enough for a cylinder of 256 facets
@@ -87,26 +87,26 @@ struct Symmetry {
 // One object, ready for recognition.
 struct CompiledModel {
   std::string name;
-  std::string cad_file;                                 // name of the CAD file without its folder
-  std::string cad_sha256;                               // hex digest of its bytes
+  std::string cad_file;    // name of the CAD file without its folder
+  std::string cad_sha256;  // hex digest of its bytes
   std::string cad_unit = "mm";
-  double diameter = 0.0;                                // largest distance between two vertices. Unit: mm.
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();     // of the bounding box, model frame. Unit: mm.
-  int views = 0;                                        // number of sample views
+  double diameter = 0.0;                             // largest distance between two vertices. Unit: mm.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the bounding box, model frame. Unit: mm.
+  int views = 0;                                     // number of sample views
   std::vector<ModelFace> faces;
-  std::vector<FacePair> pairs;                          // ascending by (first, second)
+  std::vector<FacePair> pairs;  // ascending by (first, second)
   SurfaceTemplate surface;
   AcceptanceModel acceptance;
-  std::vector<Symmetry> symmetries;                     // without the identity; exact ones first
-  std::vector<Eigen::Vector3f> vertices;                // of the CAD mesh, for overlays and for pose distances. Unit: mm.
-  std::vector<std::array<int, 3>> triangles;            // indices into vertices
-  std::vector<int> triangle_faces;                      // face of each triangle; empty in databases of earlier compilers
+  std::vector<Symmetry> symmetries;           // without the identity; exact ones first
+  std::vector<Eigen::Vector3f> vertices;      // of the CAD mesh, for overlays and for pose distances. Unit: mm.
+  std::vector<std::array<int, 3>> triangles;  // indices into vertices
+  std::vector<int> triangle_faces;            // face of each triangle; empty in databases of earlier compilers
 };
 
 // A database is compiled models that share a sensor and extraction settings.
 struct CompiledDatabase {
   std::string tool_version;
-  std::string ray_isa;                                  // instruction set the rays were cast with
+  std::string ray_isa;  // instruction set the rays were cast with
   SensorModel sensor;
   SegmentationOptions segmentation;
   DensityOptions density;

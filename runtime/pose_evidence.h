@@ -71,6 +71,7 @@ struct PoseEvidence {
 [[nodiscard]] PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model,
                                            const LabelledScan& scan, const EvidenceOptions& options = {});
 
+// The cell is explained. Again: changes nothing.
 void take(LabelledScan& scan, int cell);
 
 // Takes the cells that the object explains, and what is left of regions of which hardly anything is.
