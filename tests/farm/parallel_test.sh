@@ -69,10 +69,11 @@ compile 0 - <list
 compiled "mended" 2
 same_database "mended" all.fdb parts.fdb
 
-# The sensor decides about all; two will do. On another host: "ssh", which hands the command to a shell over there.
+# The sensor decides about all; two will do. On another host: "ssh", which hands the command to a shell
+# over there, and as sshd does tells it which.
 sed -i 's/largest_incidence_deg: 75/largest_incidence_deg: 70/' "coarse sensor.textproto"
 head -n 2 list >two
-printf '#!/bin/sh\necho "$1" >>"%s"\nshift\n[ "$1" != -- ] || shift\ncd /\nexec sh -c "$*"\n' "$work/contacted" >ssh
+printf '#!/bin/sh\necho "$1" >>"%s"\nshift\n[ "$1" != -- ] || shift\ncd /\nexport SHELL=/bin/sh\nexec sh -c "$*"\n' "$work/contacted" >ssh
 chmod +x ssh
 echo "2/$work/ssh elsewhere" >hosts
 compile 0 two --hosts hosts
