@@ -44,7 +44,7 @@ struct Detection {
   double matched = 0.0;    // alpha, Section V.C
   double coherent = 0.0;   // beta
   double occluding = 0.0;  // gamma
-  int rank = 0;  // place of its start pose (of its hypothesis: the paper's method) in the ordered list, from 1
+  int rank = 0;  // place of its start pose (of its hypothesis: the paper's method) in the order of trying, from 1
   std::vector<int> faces;                   // faces in sight at this pose (of the hypothesis: the paper's method), and
   std::vector<int> regions;                 // the regions that show them
   std::vector<Alternative> ambiguous_with;  // other poses or objects that this view fits equally well; mostly none

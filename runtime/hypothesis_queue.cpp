@@ -23,12 +23,14 @@ bool HypothesisQueue::Node::operator<(const Node& other) const {
 }
 
 HypothesisQueue::HypothesisQueue(const std::vector<RegionMatches>& matches, const std::vector<DescribedRegion>& regions,
-                                 const Database& database, const MatchRater& rater, RegionRelations& relations)
+                                 const Database& database, const MatchRater& rater, RegionRelations& relations,
+                                 double least_rating)
     : matches_(matches),
       regions_(regions),
       database_(database),
       rater_(rater),
       relations_(relations),
+      least_rating_(least_rating),
       runs_(matches.size()) {
   std::vector<double> best(matches.size(), 0.0);
   for (std::size_t r = 0; r < matches.size(); ++r) {
@@ -52,23 +54,6 @@ HypothesisQueue::HypothesisQueue(const std::vector<RegionMatches>& matches, cons
   }
 }
 
-std::optional<MatchPair> HypothesisQueue::next(double least_rating) {
-  while (!nodes_.empty() && nodes_.top().bound >= least_rating) {
-    const Node node = nodes_.top();
-    nodes_.pop();
-    if (node.match_a >= 0) {
-      return MatchPair{matches_[static_cast<std::size_t>(node.a)][static_cast<std::size_t>(node.match_a)],
-                       matches_[static_cast<std::size_t>(node.b)][static_cast<std::size_t>(node.match_b)], node.bound};
-    }
-    if (node.model >= 0) {
-      split_by_match(node);
-    } else {
-      split_by_model(node);
-    }
-  }
-  return std::nullopt;
-}
-
 void HypothesisQueue::split_by_model(const Node& node) {
   const std::vector<Run>& of_a = runs_[static_cast<std::size_t>(node.a)];
   const std::vector<Run>& of_b = runs_[static_cast<std::size_t>(node.b)];
@@ -85,27 +70,65 @@ void HypothesisQueue::split_by_model(const Node& node) {
   }
 }
 
-void HypothesisQueue::split_by_match(const Node& node) {
-  const auto run_of = [&](int region) -> const Run& {
+template <typename Visit>
+void HypothesisQueue::visit_matches(const Node& node, const Visit& visit) const {
+  const auto run_of = [&](int region) {
     const std::vector<Run>& runs = runs_[static_cast<std::size_t>(region)];
-    return *std::lower_bound(runs.begin(), runs.end(), node.model,
-                             [](const Run& run, int model) { return run.model < model; });
+    const auto run = std::lower_bound(runs.begin(), runs.end(), node.model,
+                                      [](const Run& other, int model) { return other.model < model; });
+    return run != runs.end() && run->model == node.model ? *run : Run{};
   };
   const RegionMatches& of_a = matches_[static_cast<std::size_t>(node.a)];
   const RegionMatches& of_b = matches_[static_cast<std::size_t>(node.b)];
   const RelationVector& relation = relations_.between(node.a, node.b);
   const bool cut = rater_.is_cut(regions_[static_cast<std::size_t>(node.a)]) ||
                    rater_.is_cut(regions_[static_cast<std::size_t>(node.b)]);
-  const Run& run_a = run_of(node.a);
-  const Run& run_b = run_of(node.b);
+  const Run run_a = run_of(node.a);
+  const Run run_b = run_of(node.b);
   for (std::size_t i = run_a.first; i < run_a.last; ++i) {
     for (std::size_t j = run_b.first; j < run_b.last; ++j) {
       const FacePair* pair = database_.pair(node.model, of_a[i].face, of_b[j].face);
       if (pair == nullptr) continue;
-      nodes_.push({of_a[i].rating + of_b[j].rating + rater_.rate(*pair, relation, cut), node.a, node.b, node.model,
-                   static_cast<int>(i), static_cast<int>(j)});
+      visit(Node{of_a[i].rating + of_b[j].rating + rater_.rate(*pair, relation, cut), node.a, node.b, node.model,
+                 static_cast<int>(i), static_cast<int>(j)});
     }
   }
+}
+
+MatchPair HypothesisQueue::pair_of(const Node& node) const {
+  return {matches_[static_cast<std::size_t>(node.a)][static_cast<std::size_t>(node.match_a)],
+          matches_[static_cast<std::size_t>(node.b)][static_cast<std::size_t>(node.match_b)], node.bound};
+}
+
+std::optional<MatchPair> HypothesisQueue::next(const std::function<bool(int)>& is_free) {
+  while (!nodes_.empty() && nodes_.top().bound >= least_rating_) {
+    const Node node = nodes_.top();
+    nodes_.pop();
+    if (!is_free(node.a) || !is_free(node.b)) continue;
+    if (node.match_a >= 0) return pair_of(node);
+    if (node.model >= 0) {
+      visit_matches(node, [this](const Node& pair) {
+        if (pair.bound >= least_rating_) nodes_.push(pair);
+      });
+    } else {
+      split_by_model(node);
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<MatchPair> HypothesisQueue::pairs_of(int region_a, int region_b, int most) const {
+  std::vector<Node> nodes;
+  for (const Run& run : runs_[static_cast<std::size_t>(region_a)]) {
+    visit_matches({0.0, std::min(region_a, region_b), std::max(region_a, region_b), run.model}, [&](const Node& node) {
+      if (node.bound >= least_rating_) nodes.push_back(node);
+    });
+  }
+  std::sort(nodes.begin(), nodes.end(), [](const Node& x, const Node& y) { return y < x; });
+  nodes.resize(std::min(nodes.size(), static_cast<std::size_t>(most)));
+  std::vector<MatchPair> pairs;
+  for (const Node& node : nodes) pairs.push_back(pair_of(node));
+  return pairs;
 }
 
 }  // namespace foresight

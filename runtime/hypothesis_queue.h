@@ -3,6 +3,7 @@
 // The paper lists all cliques and sorts them. In clutter, where parts of faces match much, there are 10^5 and more.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <queue>
 #include <vector>
@@ -33,12 +34,15 @@ class RegionRelations {
 // pair.
 class HypothesisQueue {
  public:
-  // All must outlive the queue.
+  // All must outlive the queue. least_rating: of the pairs it gives.
   HypothesisQueue(const std::vector<RegionMatches>& matches, const std::vector<DescribedRegion>& regions,
-                  const Database& database, const MatchRater& rater, RegionRelations& relations);
+                  const Database& database, const MatchRater& rater, RegionRelations& relations, double least_rating);
 
-  // None when there are no more pairs rated above `least_rating`.
-  [[nodiscard]] std::optional<MatchPair> next(double least_rating);
+  // None when there are no more pairs of regions that are free. A region that is not free once must not become so
+  // again: its pairs may be gone.
+  [[nodiscard]] std::optional<MatchPair> next(const std::function<bool(int)>& is_free);
+  // The pairs of two regions, the best first, at most so many; whether `next` gave them before or not.
+  [[nodiscard]] std::vector<MatchPair> pairs_of(int region_a, int region_b, int most) const;
 
  private:
   // A run of one region's matches with one model.
@@ -58,13 +62,17 @@ class HypothesisQueue {
     bool operator<(const Node& other) const;
   };
   void split_by_model(const Node& node);
-  void split_by_match(const Node& node);
+  // Calls visit for each pair of matches of the node's regions and model.
+  template <typename Visit>
+  void visit_matches(const Node& node, const Visit& visit) const;
+  [[nodiscard]] MatchPair pair_of(const Node& node) const;
 
   const std::vector<RegionMatches>& matches_;
   const std::vector<DescribedRegion>& regions_;
   const Database& database_;
   const MatchRater& rater_;
   RegionRelations& relations_;
+  double least_rating_;
   std::vector<std::vector<Run>> runs_;  // by region, models ascending
   std::priority_queue<Node> nodes_;
 };

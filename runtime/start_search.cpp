@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
-#include "runtime/hypothesis_queue.h"
-#include "runtime/pose_check.h"
 #include "runtime/pose_from_matches.h"
-#include "runtime/start_poses.h"
 
 namespace foresight {
 namespace {
@@ -16,186 +15,184 @@ namespace {
 constexpr int kRefits = 2;
 constexpr double kLeastVolume = 0.1;  // of the parallelepiped of three unit normals: less hardly fixes a point
 
-class StartSearch {
- public:
-  StartSearch(const Database& database, const LabelledScan& scan, const StartSearchOptions& options,
-              StartSearchCounts& counts)
-      : database_(database),
-        options_(options),
-        counts_(counts),
-        regions_(frame_regions(scan.regions)),
-        shapes_(database),
-        rater_(database),
-        matches_(rater_.rate(scan.regions)),
-        relations_(scan.regions),
-        checker_(database, scan),
-        found_(database.models().size()) {
-    for (const RegionMatches& matches : matches_) counts_.matches += static_cast<long>(matches.size());
-  }
-
-  std::vector<StartPose> run() {
-    HypothesisQueue queue(matches_, regions_.regions, database_, rater_, relations_);
-    for (int i = 0; i < options_.most_pairs; ++i) {
-      const std::optional<MatchPair> pair = queue.next(options_.least_rating);
-      if (!pair) break;
-      try_pair(*pair);
-    }
-    for (const RegionMatches& matches : matches_) {
-      for (const RatedMatch& match : matches) try_single(match);
-    }
-    std::vector<StartPose> starts;
-    for (std::vector<StartPose>& of_model : found_) {
-      std::move(of_model.begin(), of_model.end(), std::back_inserter(starts));
-    }
-    std::stable_sort(starts.begin(), starts.end(),
-                     [](const StartPose& a, const StartPose& b) { return a.quality > b.quality; });
-    return starts;
-  }
-
- private:
-  [[nodiscard]] const CompiledModel& model(int index) const {
-    return database_.models()[static_cast<std::size_t>(index)];
-  }
-  [[nodiscard]] const DescribedRegion& region(const RatedMatch& match) const {
-    return regions_.regions[static_cast<std::size_t>(match.region)];
-  }
-  [[nodiscard]] const ModelFace& face(const RatedMatch& match) const {
-    return model(match.model).faces[static_cast<std::size_t>(match.face)];
-  }
-
-  PoseCheck look(int model, const Pose& pose) {
-    ++counts_.checks;
-    return checker_.check(model, pose);
-  }
-
-  // Keeps the pose in `best` where it looks better.
-  void consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const std::vector<int>& regions) {
-    PoseCheck check = look(best.model, pose);
-    const double quality = check.quality();
-    if (quality <= best.quality) return;
-    best.quality = quality;
-    best.T_sensor_model = pose;
-    best.regions = regions;
-    best_check = std::move(check);
-  }
-
-  void try_pair(const MatchPair& pair) {
-    ++counts_.hypotheses;
-    StartPose best;
-    best.model = pair.a.model;
-    PoseCheck check;
-    for (const Pose& pose : pair_starts(database_, shapes_, regions_, pair)) {
-      consider(best, check, pose, {pair.a.region, pair.b.region});
-    }
-    for (const RatedMatch& third : thirds(pair)) {
-      const std::array<RegionFaceMatch, 3> matches = {
-          {{&region(pair.a), &face(pair.a)}, {&region(pair.b), &face(pair.b)}, {&region(third), &face(third)}}};
-      const std::optional<Pose> pose = pose_from_matches(matches);
-      if (pose) consider(best, check, *pose, {pair.a.region, pair.b.region, third.region});
-    }
-    keep(std::move(best), std::move(check));
-  }
-
-  // All that look like something are kept: one surface often fits in several ways, and the answer has to say so.
-  void try_single(const RatedMatch& match) {
-    ++counts_.hypotheses;
-    for (const Pose& pose : single_starts(database_, shapes_, regions_, match, rater_.is_cut(region(match)))) {
-      StartPose start;
-      start.model = match.model;
-      PoseCheck check;
-      consider(start, check, pose, {match.region});
-      keep(std::move(start), std::move(check));
-    }
-  }
-
-  // The matches that go best with both, of regions whose plane fixes the point of the pair's line and that see the
-  // object from the same side: the sign of the triple product of the normals tells an object from its mirror image.
-  std::vector<RatedMatch> thirds(const MatchPair& pair) {
-    struct Third {
-      double rating;
-      RatedMatch match;
-    };
-    std::vector<Third> found;
-    const Eigen::Vector3d seen = region(pair.a).region.normal.cross(region(pair.b).region.normal);
-    const Eigen::Vector3d modelled = face(pair.a).normal.cross(face(pair.b).normal);
-    for (std::size_t r = 0; r < matches_.size(); ++r) {
-      const int index = static_cast<int>(r);
-      if (index == pair.a.region || index == pair.b.region) continue;
-      const double volume = seen.dot(regions_.regions[r].region.normal);
-      if (std::abs(volume) < kLeastVolume) continue;
-      const auto run = std::equal_range(matches_[r].begin(), matches_[r].end(), RatedMatch{0, pair.a.model, 0, 0.0},
-                                        [](const RatedMatch& a, const RatedMatch& b) { return a.model < b.model; });
-      for (auto third = run.first; third != run.second; ++third) {
-        const double model_volume = modelled.dot(face(*third).normal);
-        if (std::abs(model_volume) < kLeastVolume || (model_volume > 0.0) != (volume > 0.0)) continue;
-        const std::optional<double> rating = rate_third(pair, *third);
-        if (rating && *rating > 0.0) found.push_back({*rating, *third});
-      }
-    }
-    const auto count = std::min(found.size(), static_cast<std::size_t>(options_.most_thirds));
-    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end(),
-                      [](const Third& a, const Third& b) {
-                        return std::tuple(-a.rating, a.match.region, a.match.face) <
-                               std::tuple(-b.rating, b.match.region, b.match.face);
-                      });
-    std::vector<RatedMatch> best;
-    for (std::size_t i = 0; i < count; ++i) best.push_back(found[i].match);
-    return best;
-  }
-
-  std::optional<double> rate_third(const MatchPair& pair, const RatedMatch& third) {
-    double rating = third.rating;
-    for (const RatedMatch* match : {&pair.a, &pair.b}) {
-      const FacePair* faces = database_.pair(third.model, match->face, third.face);
-      if (faces == nullptr) return std::nullopt;
-      const bool cut = rater_.is_cut(region(*match)) || rater_.is_cut(region(third));
-      rating += rater_.rate(*faces, relations_.between(match->region, third.region), cut);
-    }
-    return rating;
-  }
-
-  // Settles a start on the planes it touches and keeps it, once for all starts that settle together.
-  void keep(StartPose start, PoseCheck check) {
-    if (!(start.quality > 0.0)) return;
-    for (int i = 0; i < kRefits; ++i) {
-      const Pose refitted = refit_to_planes(model(start.model), start.T_sensor_model, check, regions_.regions);
-      PoseCheck at_refitted = look(start.model, refitted);
-      if (at_refitted.quality() < start.quality) break;
-      start.T_sensor_model = refitted;
-      start.quality = at_refitted.quality();
-      check = std::move(at_refitted);
-    }
-    const CompiledModel& compiled = model(start.model);
-    std::vector<StartPose>& known = found_[static_cast<std::size_t>(start.model)];
-    const Eigen::Vector3d centre = start.T_sensor_model * compiled.centre;
-    const double least_trace = 1.0 + 2.0 * std::cos(options_.same_angle);
-    for (StartPose& other : known) {
-      const Eigen::Vector3d apart = other.T_sensor_model * compiled.centre - centre;
-      if (apart.squaredNorm() > options_.same_distance * options_.same_distance) continue;
-      if (other.T_sensor_model.rotation.cwiseProduct(start.T_sensor_model.rotation).sum() < least_trace) continue;
-      if (start.quality > other.quality) other = std::move(start);
-      return;
-    }
-    known.push_back(std::move(start));
-  }
-
-  const Database& database_;
-  const StartSearchOptions& options_;
-  StartSearchCounts& counts_;
-  ScanRegions regions_;
-  FaceShapes shapes_;
-  MatchRater rater_;
-  std::vector<RegionMatches> matches_;
-  RegionRelations relations_;
-  PoseChecker checker_;
-  std::vector<std::vector<StartPose>> found_;  // by model
-};
-
 }  // namespace
+
+StartSearch::StartSearch(const Database& database, const LabelledScan& scan, const StartSearchOptions& options,
+                         StartSearchCounts& counts)
+    : database_(database),
+      scan_(scan),
+      options_(options),
+      counts_(counts),
+      regions_(frame_regions(scan.regions)),
+      shapes_(database),
+      rater_(database),
+      matches_(rater_.rate(scan.regions)),
+      relations_(scan.regions),
+      checker_(database, scan),
+      queue_(matches_, regions_.regions, database_, rater_, relations_, options.least_rating),
+      of_model_(database.models().size()) {
+  for (const RegionMatches& matches : matches_) counts_.matches += static_cast<long>(matches.size());
+}
+
+bool StartSearch::look_further(int hypotheses) {
+  const auto is_free = [this](int region) { return !is_taken(scan_, region); };
+  int looked_at = 0;
+  for (; pairs_ < options_.most_pairs && looked_at < hypotheses; ++looked_at, ++pairs_) {
+    const std::optional<MatchPair> pair = queue_.next(is_free);
+    if (!pair) break;
+    try_pair(*pair);
+  }
+  for (; single_region_ < matches_.size(); ++single_region_, single_match_ = 0) {
+    const RegionMatches& matches = matches_[single_region_];
+    if (!is_free(static_cast<int>(single_region_))) continue;
+    for (; single_match_ < matches.size(); ++single_match_, ++looked_at) {
+      if (looked_at >= hypotheses) return true;
+      try_single(matches[single_match_]);
+    }
+  }
+  return false;
+}
+
+void StartSearch::look_for_rivals(int region, int second) {
+  if (!rivals_.insert({region, second}).second) return;
+  if (second >= 0) {
+    for (const MatchPair& pair : queue_.pairs_of(region, second, options_.most_rivals)) try_pair(pair);
+  }
+  RegionMatches singles = matches_[static_cast<std::size_t>(region)];
+  std::stable_sort(singles.begin(), singles.end(),
+                   [](const RatedMatch& a, const RatedMatch& b) { return a.rating > b.rating; });
+  const auto most = static_cast<std::size_t>(options_.most_rivals);
+  for (std::size_t i = 0; i < std::min(most, singles.size()); ++i) try_single(singles[i]);
+}
+
+PoseCheck StartSearch::look(int model, const Pose& pose) {
+  ++counts_.checks;
+  return checker_.check(model, pose);
+}
+
+// Keeps the pose in `best` where it looks better.
+void StartSearch::consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const std::vector<int>& regions) {
+  PoseCheck check = look(best.model, pose);
+  const double quality = check.quality();
+  if (quality <= best.quality) return;
+  best.quality = quality;
+  best.T_sensor_model = pose;
+  best.regions = regions;
+  best_check = std::move(check);
+}
+
+void StartSearch::try_pair(const MatchPair& pair) {
+  ++counts_.hypotheses;
+  StartPose best;
+  best.model = pair.a.model;
+  PoseCheck check;
+  for (const Pose& pose : pair_starts(database_, shapes_, regions_, pair)) {
+    consider(best, check, pose, {pair.a.region, pair.b.region});
+  }
+  for (const RatedMatch& third : thirds(pair)) {
+    const std::array<RegionFaceMatch, 3> matches = {
+        {{&region(pair.a), &face(pair.a)}, {&region(pair.b), &face(pair.b)}, {&region(third), &face(third)}}};
+    const std::optional<Pose> pose = pose_from_matches(matches);
+    if (pose) consider(best, check, *pose, {pair.a.region, pair.b.region, third.region});
+  }
+  keep(std::move(best), std::move(check));
+}
+
+// All that look like something are kept: one surface often fits in several ways, and the answer has to say so.
+void StartSearch::try_single(const RatedMatch& match) {
+  ++counts_.hypotheses;
+  for (const Pose& pose : single_starts(database_, shapes_, regions_, match, rater_.is_cut(region(match)))) {
+    StartPose start;
+    start.model = match.model;
+    PoseCheck check;
+    consider(start, check, pose, {match.region});
+    keep(std::move(start), std::move(check));
+  }
+}
+
+// The matches that go best with both, of regions whose plane fixes the point of the pair's line and that see the
+// object from the same side: the sign of the triple product of the normals tells an object from its mirror image.
+std::vector<RatedMatch> StartSearch::thirds(const MatchPair& pair) {
+  struct Third {
+    double rating;
+    RatedMatch match;
+  };
+  std::vector<Third> found;
+  const Eigen::Vector3d seen = region(pair.a).region.normal.cross(region(pair.b).region.normal);
+  const Eigen::Vector3d modelled = face(pair.a).normal.cross(face(pair.b).normal);
+  for (std::size_t r = 0; r < matches_.size(); ++r) {
+    const int index = static_cast<int>(r);
+    if (index == pair.a.region || index == pair.b.region || is_taken(scan_, index)) continue;
+    const double volume = seen.dot(regions_.regions[r].region.normal);
+    if (std::abs(volume) < kLeastVolume) continue;
+    const auto run = std::equal_range(matches_[r].begin(), matches_[r].end(), RatedMatch{0, pair.a.model, 0, 0.0},
+                                      [](const RatedMatch& a, const RatedMatch& b) { return a.model < b.model; });
+    for (auto third = run.first; third != run.second; ++third) {
+      const double model_volume = modelled.dot(face(*third).normal);
+      if (std::abs(model_volume) < kLeastVolume || (model_volume > 0.0) != (volume > 0.0)) continue;
+      const std::optional<double> rating = rate_third(pair, *third);
+      if (rating && *rating > 0.0) found.push_back({*rating, *third});
+    }
+  }
+  const auto count = std::min(found.size(), static_cast<std::size_t>(options_.most_thirds));
+  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end(),
+                    [](const Third& a, const Third& b) {
+                      return std::tuple(-a.rating, a.match.region, a.match.face) <
+                             std::tuple(-b.rating, b.match.region, b.match.face);
+                    });
+  std::vector<RatedMatch> best;
+  for (std::size_t i = 0; i < count; ++i) best.push_back(found[i].match);
+  return best;
+}
+
+std::optional<double> StartSearch::rate_third(const MatchPair& pair, const RatedMatch& third) {
+  double rating = third.rating;
+  for (const RatedMatch* match : {&pair.a, &pair.b}) {
+    const FacePair* faces = database_.pair(third.model, match->face, third.face);
+    if (faces == nullptr) return std::nullopt;
+    const bool cut = rater_.is_cut(region(*match)) || rater_.is_cut(region(third));
+    rating += rater_.rate(*faces, relations_.between(match->region, third.region), cut);
+  }
+  return rating;
+}
+
+// Settles a start on the planes it touches and keeps it, once for all starts that settle together.
+void StartSearch::keep(StartPose start, PoseCheck check) {
+  if (!(start.quality > 0.0)) return;
+  for (int i = 0; i < kRefits; ++i) {
+    const Pose refitted = refit_to_planes(model(start.model), start.T_sensor_model, check, regions_.regions);
+    PoseCheck at_refitted = look(start.model, refitted);
+    if (at_refitted.quality() < start.quality) break;
+    start.T_sensor_model = refitted;
+    start.quality = at_refitted.quality();
+    check = std::move(at_refitted);
+  }
+  const CompiledModel& compiled = model(start.model);
+  std::vector<std::size_t>& known = of_model_[static_cast<std::size_t>(start.model)];
+  const Eigen::Vector3d centre = start.T_sensor_model * compiled.centre;
+  const double least_trace = 1.0 + 2.0 * std::cos(options_.same_angle);
+  for (const std::size_t index : known) {
+    StartPose& other = starts_[index];
+    const Eigen::Vector3d apart = other.T_sensor_model * compiled.centre - centre;
+    if (apart.squaredNorm() > options_.same_distance * options_.same_distance) continue;
+    if (other.T_sensor_model.rotation.cwiseProduct(start.T_sensor_model.rotation).sum() < least_trace) continue;
+    if (start.quality > other.quality) other = std::move(start);
+    return;
+  }
+  known.push_back(starts_.size());
+  starts_.push_back(std::move(start));
+}
 
 std::vector<StartPose> find_starts(const Database& database, const LabelledScan& scan,
                                    const StartSearchOptions& options, StartSearchCounts& counts) {
-  return StartSearch(database, scan, options, counts).run();
+  StartSearch search(database, scan, options, counts);
+  while (search.look_further(std::numeric_limits<int>::max())) {
+  }
+  std::vector<StartPose> starts = search.starts();
+  std::stable_sort(starts.begin(), starts.end(), [](const StartPose& a, const StartPose& b) {
+    return std::tuple(-a.quality, a.model) < std::tuple(-b.quality, b.model);
+  });
+  return starts;
 }
 
 }  // namespace foresight

@@ -5,11 +5,17 @@
 // them.
 #pragma once
 
+#include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "common/pose.h"
 #include "runtime/database.h"
+#include "runtime/hypothesis_queue.h"
+#include "runtime/pose_check.h"
 #include "runtime/pose_evidence.h"
+#include "runtime/start_poses.h"
 
 namespace foresight {
 
@@ -23,6 +29,7 @@ struct StartPose {
 struct StartSearchOptions {
   int most_pairs = 4000;       // hypotheses of two or three regions looked at. Limit: >= 0.
   double least_rating = 0.0;   // of these
+  int most_rivals = 200;       // pairs, and as many single matches, looked at for the same regions. Limit: >= 0.
   int most_thirds = 2;         // third regions tried for a pair
   double same_distance = 4.0;  // starts this near, and
   double same_angle = 0.035;   // turned by less than 2 degrees, are one. Unit: mm, rad. Limit: > 0.
@@ -34,7 +41,62 @@ struct StartSearchCounts {
   long checks = 0;      // poses looked at
 };
 
-// Best quality first. REQUIRES: the models know the faces of their triangles.
+// The search, a stretch at a time, so that what is found may be tried before the rest is looked for.
+class StartSearch {
+ public:
+  // The database, the scan, the options and the counts must outlive the search. What the scan has taken by the time of
+  // a call takes no part in it. REQUIRES: the models know the faces of their triangles.
+  StartSearch(const Database& database, const LabelledScan& scan, const StartSearchOptions& options,
+              StartSearchCounts& counts);
+
+  // Looks at the next hypotheses, at most so many: the best rated pairs first, then single regions. Whether more may be
+  // left.
+  bool look_further(int hypotheses);
+  // Looks at all that may explain these regions, the best rated first: pairs of the two, then the first alone. Again:
+  // does nothing. second: -1 where one region is all.
+  void look_for_rivals(int region, int second);
+
+  // In the order they were found. A start that settles where another did replaces it where it looks better.
+  [[nodiscard]] const std::vector<StartPose>& starts() const { return starts_; }
+
+ private:
+  [[nodiscard]] const CompiledModel& model(int index) const {
+    return database_.models()[static_cast<std::size_t>(index)];
+  }
+  [[nodiscard]] const DescribedRegion& region(const RatedMatch& match) const {
+    return regions_.regions[static_cast<std::size_t>(match.region)];
+  }
+  [[nodiscard]] const ModelFace& face(const RatedMatch& match) const {
+    return model(match.model).faces[static_cast<std::size_t>(match.face)];
+  }
+  PoseCheck look(int model, const Pose& pose);
+  void consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const std::vector<int>& regions);
+  void try_pair(const MatchPair& pair);
+  void try_single(const RatedMatch& match);
+  [[nodiscard]] std::vector<RatedMatch> thirds(const MatchPair& pair);
+  [[nodiscard]] std::optional<double> rate_third(const MatchPair& pair, const RatedMatch& third);
+  void keep(StartPose start, PoseCheck check);
+
+  const Database& database_;
+  const LabelledScan& scan_;
+  const StartSearchOptions options_;
+  StartSearchCounts& counts_;
+  ScanRegions regions_;
+  FaceShapes shapes_;
+  MatchRater rater_;
+  std::vector<RegionMatches> matches_;
+  RegionRelations relations_;
+  PoseChecker checker_;
+  HypothesisQueue queue_;
+  int pairs_ = 0;                         // looked at
+  std::size_t single_region_ = 0;         // the next single match: region, and
+  std::size_t single_match_ = 0;          // place among its matches
+  std::set<std::pair<int, int>> rivals_;  // regions for which they were looked for
+  std::vector<StartPose> starts_;
+  std::vector<std::vector<std::size_t>> of_model_;  // starts
+};
+
+// The whole search at once, best quality first.
 [[nodiscard]] std::vector<StartPose> find_starts(const Database& database, const LabelledScan& scan,
                                                  const StartSearchOptions& options, StartSearchCounts& counts);
 

@@ -18,6 +18,7 @@ namespace {
 // A refined pose that may be reported.
 struct Candidate {
   std::size_t start = 0;  // that it came of
+  int rank = 0;           // of the start in the order of trying
   Localization localization;
   double probability = 0.0;
 
@@ -30,6 +31,7 @@ struct AcceptedPose {
 };
 
 constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
+constexpr int kMostDoublings = 12;             // of a stretch of hypotheses
 constexpr double kRivalView = 0.9;             // of the cells a rival's start must show alike to be worth refining
 
 class TwoWaySearch {
@@ -44,25 +46,41 @@ class TwoWaySearch {
         labelled_(label_scan(scan.image, scan.camera, scan.database.content().sensor, scan.regions)),
         fine_{agreeing_distance(labelled_.sensor)},
         checker_(scan.database, labelled_),
-        settling_(scan.database, labelled_, settling_options(labelled_.sensor)) {}
+        settling_(scan.database, labelled_, settling_options(labelled_.sensor)),
+        search_(scan.database, labelled_, {}, counts_) {}
 
+  // Looks for starts and tries them by turns: the best rated hypotheses are right so often that what they find, and
+  // take, spares looking at most of the others. Starts that look less well wait until more are known.
   void run() {
-    StartSearchCounts counts;
-    starts_ = find_starts(scan_.database, labelled_, {}, counts);
-    result_.statistics.threshold_matches = counts.matches;
-    result_.statistics.active_matches = counts.matches;
-    result_.statistics.hypotheses = counts.hypotheses;
-    result_.statistics.pose_checks = counts.checks;
-    watch_.lap(result_.milliseconds.hypotheses);
-    for (std::size_t i = 0; i < starts_.size() && !out_of_limits(); ++i) {
-      if (!uses_taken(starts_[i])) try_start(i);
+    bool more = true;
+    for (int turn = 0; more && !out_of_limits(); ++turn) {
+      watch_.lap(result_.milliseconds.verify);
+      more = search_.look_further(two_way_.first_stretch << std::min(turn, kMostDoublings));
+      watch_.lap(result_.milliseconds.hypotheses);
+      try_starts(more ? std::max(two_way_.eager_quality - turn * two_way_.eager_step, two_way_.least_eager) : 0.0);
     }
     decide_among_candidates();
+    result_.statistics.threshold_matches = counts_.matches;
+    result_.statistics.active_matches = counts_.matches;
+    result_.statistics.hypotheses = counts_.hypotheses;
+    result_.statistics.pose_checks += counts_.checks;
   }
 
  private:
   [[nodiscard]] const CompiledModel& model_of(std::size_t start) const {
-    return scan_.database.models()[static_cast<std::size_t>(starts_[start].model)];
+    return scan_.database.models()[static_cast<std::size_t>(start_pose(start).model)];
+  }
+  [[nodiscard]] const StartPose& start_pose(std::size_t start) const { return search_.starts()[start]; }
+  // Of all starts for which `wanted` holds, the best looking first.
+  template <typename Wanted>
+  [[nodiscard]] std::vector<std::size_t> best_starts(const Wanted& wanted) const {
+    std::vector<std::size_t> best;
+    for (std::size_t i = 0; i < search_.starts().size(); ++i) {
+      if (wanted(i)) best.push_back(i);
+    }
+    std::stable_sort(best.begin(), best.end(),
+                     [this](std::size_t a, std::size_t b) { return start_pose(a).quality > start_pose(b).quality; });
+    return best;
   }
   [[nodiscard]] bool out_of_limits() const { return limits_reached(options_, deadline_, result_); }
   [[nodiscard]] bool uses_taken(const StartPose& start) const {
@@ -87,7 +105,7 @@ class TwoWaySearch {
   }
   [[nodiscard]] double quality(std::size_t start, const Pose& pose) {
     ++result_.statistics.pose_checks;
-    return checker_.check(starts_[start].model, pose).quality();
+    return checker_.check(start_pose(start).model, pose).quality();
   }
 
   // Counts tries of the same regions with one model.
@@ -101,7 +119,7 @@ class TwoWaySearch {
   // Whether training saw anything come of starts like this. Read anew: regions may have been taken since it was found.
   bool worth_refining(std::size_t start) {
     const AcceptanceModel& acceptance = model_of(start).acceptance;
-    const Pose& pose = starts_[start].T_sensor_model;
+    const Pose& pose = start_pose(start).T_sensor_model;
     if (quality(start, pose) < acceptance.least_quality) return false;
     EvidenceOptions rough;
     rough.distance = kStartDistance;
@@ -113,7 +131,8 @@ class TwoWaySearch {
     watch_.lap(result_.milliseconds.verify);
     Candidate candidate;
     candidate.start = start;
-    candidate.localization = localize_and_settle(scan_, labelled_, starts_[start].model, from, options_, settling_);
+    candidate.rank = order_;
+    candidate.localization = localize_and_settle(scan_, labelled_, start_pose(start).model, from, options_, settling_);
     ++result_.statistics.verifications;
     result_.statistics.energy_evaluations += candidate.localization.energy_evaluations;
     watch_.lap(result_.milliseconds.localize);
@@ -122,9 +141,25 @@ class TwoWaySearch {
     return candidate;
   }
 
+  // All that are untried and look this well, the best first. Trying one may find others, of its rivals.
+  void try_starts(double least_quality) {
+    while (true) {
+      tried_.resize(search_.starts().size(), false);
+      const auto untried =
+          best_starts([&](std::size_t i) { return !tried_[i] && start_pose(i).quality >= least_quality; });
+      if (untried.empty()) return;
+      for (const std::size_t i : untried) {
+        if (out_of_limits()) return;
+        tried_[i] = true;
+        ++order_;
+        if (!uses_taken(start_pose(i))) try_start(i);
+      }
+    }
+  }
+
   void try_start(std::size_t i) {
-    if (!worth_refining(i) || tried_enough(starts_[i])) return;
-    Candidate candidate = refined(i, starts_[i].T_sensor_model);
+    if (!worth_refining(i) || tried_enough(start_pose(i))) return;
+    Candidate candidate = refined(i, start_pose(i).T_sensor_model);
     if (candidate.probability < two_way_.accepted) return;
     prefer_near_symmetric(candidate);
     prefer_rival(candidate);
@@ -150,11 +185,12 @@ class TwoWaySearch {
   // Other starts for the same regions, of any object, may explain them better still. What they explain when settled on
   // planes tells which are worth localizing.
   void prefer_rival(Candidate& candidate) {
+    look_for_rivals(candidate);
     int looked_at = 0;
-    for (std::size_t i = candidate.start + 1; i < starts_.size() && looked_at < two_way_.most_rivals; ++i) {
-      if (!shares_region(starts_[i], starts_[candidate.start]) || uses_taken(starts_[i])) continue;
-      ++looked_at;
-      const Pose settled = settle(scan_, starts_[i].model, starts_[i].T_sensor_model, settling_);
+    for (const std::size_t i : rivals(candidate)) {
+      if (looked_at++ == two_way_.most_rivals) return;
+      if (i < tried_.size() && tried_[i]) continue;
+      const Pose settled = settle(scan_, start_pose(i).model, start_pose(i).T_sensor_model, settling_);
       if (already_known({candidate}, i, settled)) continue;
       const double probability = probability_right(model_of(i).acceptance, evidence(i, settled));
       if (probability <= candidate.probability) continue;
@@ -162,6 +198,28 @@ class TwoWaySearch {
       const Candidate rival = refined(i, settled);
       if (rival.probability > candidate.probability) candidate = rival;
     }
+  }
+
+  // What would show the same matches the regions of which the pose explains most.
+  void look_for_rivals(const Candidate& candidate) {
+    watch_.lap(result_.milliseconds.verify);
+    std::map<int, double> cells;
+    for (const FaceSupport& support : checker_.check(start_pose(candidate.start).model, candidate.pose()).supports) {
+      if (!is_taken(labelled_, support.region)) cells[support.region] += support.cells;
+    }
+    std::vector<std::pair<double, int>> regions;
+    for (const auto& [region, count] : cells) regions.push_back({-count, region});
+    std::sort(regions.begin(), regions.end());
+    if (!regions.empty()) search_.look_for_rivals(regions[0].second, regions.size() > 1 ? regions[1].second : -1);
+    watch_.lap(result_.milliseconds.hypotheses);
+  }
+
+  // Other starts that rest on the same regions, the best looking first.
+  [[nodiscard]] std::vector<std::size_t> rivals(const Candidate& candidate) const {
+    return best_starts([&](std::size_t i) {
+      return i != candidate.start && shares_region(start_pose(i), start_pose(candidate.start)) &&
+             !uses_taken(start_pose(i));
+    });
   }
 
   [[nodiscard]] static bool shares_region(const StartPose& a, const StartPose& b) {
@@ -178,12 +236,12 @@ class TwoWaySearch {
     pose.verification = verify(model, scan_.sphere, reported.T_sensor_model, scan_.image, scan_.camera, scan_.data,
                                verification_options(options_));
     Detection detection = to_detection(model, pose);
-    detection.rank = static_cast<int>(candidate.start) + 1;
+    detection.rank = candidate.rank;
     detection.score = candidate.probability;
-    list_supports(starts_[candidate.start].model, reported.T_sensor_model, detection);
+    list_supports(start_pose(candidate.start).model, reported.T_sensor_model, detection);
     detection.ambiguous_with = alternatives(candidate);
     take_explained(model, candidate.pose(), fine_, labelled_);
-    accepted_.push_back({starts_[candidate.start].model, candidate.pose()});
+    accepted_.push_back({start_pose(candidate.start).model, candidate.pose()});
     result_.detections.push_back(std::move(detection));
   }
 
@@ -204,11 +262,10 @@ class TwoWaySearch {
     const Rendering view = drawn(candidate.start, candidate.pose());
     std::vector<Candidate> found = {candidate};
     int looked_at = 0;
-    for (std::size_t i = 0; i < starts_.size() && looked_at < two_way_.most_rivals; ++i) {
-      const StartPose& rival = starts_[i];
-      if (!shares_region(rival, starts_[candidate.start]) || uses_taken(rival) ||
-          already_known(found, i, rival.T_sensor_model))
-        continue;
+    for (const std::size_t i : rivals(candidate)) {
+      const StartPose& rival = start_pose(i);
+      if (looked_at == two_way_.most_rivals) break;
+      if (already_known(found, i, rival.T_sensor_model)) continue;
       ++looked_at;
       if (same_share(view, drawn(i, rival.T_sensor_model), two_way_.same_distance) < kRivalView) continue;
       if (out_of_limits()) break;
@@ -235,7 +292,7 @@ class TwoWaySearch {
              rotation_angle(a.rotation.transpose() * b.rotation) <= 2.0 * same.same_angle;
     };
     return std::any_of(found.begin(), found.end(), [&](const Candidate& other) {
-      if (starts_[other.start].model != starts_[start].model) return false;
+      if (start_pose(other.start).model != start_pose(start).model) return false;
       if (equals(other.pose(), pose)) return true;
       return std::any_of(model.symmetries.begin(), model.symmetries.end(), [&](const Symmetry& symmetry) {
         return symmetry.exact && equals(other.pose() * symmetry.T_model_model, pose);
@@ -250,7 +307,7 @@ class TwoWaySearch {
     for (Candidate& candidate : candidates_) {
       const auto most = static_cast<std::size_t>(options_.most_detections);
       if (most > 0 && result_.detections.size() >= most) break;
-      if (uses_taken(starts_[candidate.start])) continue;
+      if (uses_taken(start_pose(candidate.start))) continue;
       candidate.probability =
           probability_right(model_of(candidate.start).acceptance, evidence(candidate.start, candidate.pose()));
       if (candidate.probability >= two_way_.accepted && !penetrates_accepted(candidate)) accept(candidate);
@@ -267,7 +324,10 @@ class TwoWaySearch {
   EvidenceOptions fine_;
   PoseChecker checker_;
   PoseChecker settling_;
-  std::vector<StartPose> starts_;
+  StartSearchCounts counts_;
+  StartSearch search_;
+  std::vector<bool> tried_;  // by start
+  int order_ = 0;            // starts taken up so far
   std::vector<Candidate> candidates_;
   std::vector<AcceptedPose> accepted_;
   std::map<std::vector<int>, int> tries_;  // by regions and model

@@ -20,7 +20,13 @@ struct TwoWayOptions {
   int most_tries = 3;         // starts of one model refined from the same regions, the best looking ones. Limit: >= 1.
   // Alternatives: of the starts that rest on the same regions so many, the best looking ones, are refined as well;
   // those that are accepted and would show the same in this share of the cells are what the view cannot tell apart.
-  int most_rivals = 12;        // Limit: >= 0.
+  int most_rivals = 12;  // Limit: >= 0.
+  // Starts are tried as soon as they look this well, each time after so many more hypotheses; each time it is twice as
+  // many, and less is asked of their looks. What is left is tried when all hypotheses have been looked at.
+  int first_stretch = 48;      // Limit: >= 1.
+  double eager_quality = 0.8;  // Limit: 0 to 1.
+  double eager_step = 0.1;     // Limit: >= 0.
+  double least_eager = 0.4;    // Limit: 0 to 1.
   double same_view = 0.95;     // Limit: 0 to 1.
   double same_distance = 5.0;  // of depths that are the same. Unit: mm. Limit: > 0.
 };

@@ -221,12 +221,71 @@ TEST(StartSearch, says_the_same_twice) {
   }
 }
 
-TEST(StartSearch, where_all_is_taken_no_start_looks_well) {
+TEST(StartSearch, finds_the_same_in_one_stretch_or_many) {
+  const LabelledScan scan = scene_of_two().labelled();
+  StartSearchCounts counts;
+  StartSearch search(database(), scan, {}, counts);
+  int stretches = 1;
+  long looked_at = 0;
+  while (search.look_further(50)) {
+    ++stretches;
+    EXPECT_EQ(counts.hypotheses, looked_at + 50);
+    looked_at = counts.hypotheses;
+  }
+  EXPECT_GT(stretches, 3);
+  const Found at_once = find(database(), scene_of_two());
+  EXPECT_EQ(counts.hypotheses, at_once.counts.hypotheses);
+  EXPECT_EQ(counts.checks, at_once.counts.checks);
+  EXPECT_EQ(search.starts().size(), at_once.starts.size());
+}
+
+TEST(StartSearch, what_is_taken_on_the_way_takes_no_part_in_the_rest) {
+  LabelledScan scan = scene_of_two().labelled();
+  StartSearchCounts counts;
+  StartSearch search(database(), scan, {}, counts);
+  ASSERT_TRUE(search.look_further(10));
+  const std::size_t before = search.starts().size();
+  const int taken = search.starts()[0].regions[0];
+  for (const int cell : scan.regions[static_cast<std::size_t>(taken)].region.cells) take(scan, cell);
+  const std::vector<StartPose> known = search.starts();
+  while (search.look_further(1000)) {
+  }
+  ASSERT_GT(search.starts().size(), before);
+  for (std::size_t i = 0; i < search.starts().size(); ++i) {
+    const std::vector<int>& regions = search.starts()[i].regions;
+    if (i < before && regions == known[i].regions) continue;
+    EXPECT_EQ(std::count(regions.begin(), regions.end(), taken), 0);
+  }
+  EXPECT_LT(counts.hypotheses, find(database(), scene_of_two()).counts.hypotheses);
+}
+
+TEST(StartSearch, rivals_are_all_that_may_explain_the_same_regions) {
+  const Pose truth = open_view(model(0), 3);
+  const SeenScan seen(test::image_of({{&model(0), truth}}));
+  const LabelledScan scan = seen.labelled();
+  StartSearchCounts counts;
+  StartSearch search(database(), scan, {}, counts);
+  search.look_for_rivals(0, 1);
+  ASSERT_FALSE(search.starts().empty());
+  std::set<int> models;
+  for (const StartPose& start : search.starts()) {
+    models.insert(start.model);
+    EXPECT_TRUE(std::count(start.regions.begin(), start.regions.end(), 0) > 0);
+  }
+  EXPECT_GE(models.size(), 2U);
+  const long hypotheses = counts.hypotheses;
+  search.look_for_rivals(0, 1);
+  EXPECT_EQ(counts.hypotheses, hypotheses) << "looked for twice";
+  search.look_for_rivals(1, -1);
+  EXPECT_GT(counts.hypotheses, hypotheses);
+}
+
+TEST(StartSearch, where_all_is_taken_there_is_no_start) {
   LabelledScan scan = scene_of_two().labelled();
   for (int cell = 0; cell < scan.image.size(); ++cell) take(scan, cell);
   StartSearchCounts counts;
-  for (const StartPose& start : find_starts(database(), scan, {}, counts)) EXPECT_LT(start.quality, 0.2);
-  EXPECT_GT(counts.checks, 0);
+  EXPECT_TRUE(find_starts(database(), scan, {}, counts).empty());
+  EXPECT_GT(counts.matches, 0);
 }
 
 TEST(StartSearch, finds_nothing_where_nothing_is_seen) {
