@@ -15,6 +15,7 @@
 #include "benchmarks/plot.h"
 #include "benchmarks/series.h"
 #include "common/errors.h"
+#include "runtime/nearest_data_point.h"
 #include "runtime/verification.h"
 
 namespace foresight {

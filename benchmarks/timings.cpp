@@ -14,6 +14,7 @@
 #include "compiler/scene_generator.h"
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
+#include "runtime/nearest_data_point.h"
 #include "runtime/pose_evidence.h"
 #include "runtime/pose_from_matches.h"
 #include "runtime/recognize.h"

@@ -10,6 +10,7 @@
 
 #include "compiler/logistic_regression.h"
 #include "compiler/scene_generator.h"
+#include "runtime/nearest_data_cell.h"
 #include "runtime/pose_evidence.h"
 #include "runtime/recognize.h"
 #include "runtime/rendering.h"
@@ -161,7 +162,7 @@ class SceneTeacher {
                const std::vector<DescribedRegion>& regions)
       : model_(database.models().front()),
         context_{scene.scan.image, database.content().sensor.camera, database, regions,
-                 NearestDataPoint(scene.scan.image)},
+                 std::make_unique<NearestDataCell>(scene.scan.image, database.content().sensor.camera)},
         labelled_(label_scan(scene.scan.image, context_.camera, database.content().sensor, regions)),
         settling_(database, labelled_, settling_options(labelled_.sensor)) {
     for (const SceneObject& object : scene.objects) {

@@ -13,7 +13,7 @@ namespace {
 // What one refinement carries along.
 class Refinement {
  public:
-  Refinement(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start, const NearestDataPoint& data,
+  Refinement(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start, const NearestData& data,
              const LocalizationOptions& options)
       : model_(model), sphere_(sphere), data_(data), options_(options), pose_(start) {
     look(visible_points(model_, sphere_, pose_));
@@ -45,7 +45,7 @@ class Refinement {
 
   const CompiledModel& model_;
   const ViewingSphere& sphere_;
-  const NearestDataPoint& data_;
+  const NearestData& data_;
   const LocalizationOptions& options_;
   Pose pose_;
   std::vector<int> visible_;  // V, fixed during a line search
@@ -92,8 +92,8 @@ bool Refinement::rotate() {
 }
 
 // guess: of a data point, -1 = none.
-NearestDataPoint::Answer nearest_to(const Eigen::Vector3f& query, int guess, const NearestDataPoint& data,
-                                    const LocalizationOptions& options) {
+NearestData::Answer nearest_to(const Eigen::Vector3f& query, int guess, const NearestData& data,
+                               const LocalizationOptions& options) {
   if (options.reach > 0.0) return data.find_within(query, static_cast<float>(options.reach), guess);
   return guess < 0 ? data.find(query) : data.find(query, guess);
 }
@@ -116,7 +116,7 @@ std::vector<int> visible_points(const CompiledModel& model, const ViewingSphere&
 }
 
 EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<int>& visible,
-                                 const Pose& T_sensor_model, const NearestDataPoint& data,
+                                 const Pose& T_sensor_model, const NearestData& data,
                                  const LocalizationOptions& options, const EnergyEvaluation* nearby) {
   assert(nearby == nullptr || nearby->residuals.size() == visible.size());
   EnergyEvaluation evaluation;
@@ -135,7 +135,7 @@ EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<i
 }
 
 double localization_energy(const CompiledModel& model, const std::vector<int>& visible, const Pose& T_sensor_model,
-                           const NearestDataPoint& data, const LocalizationOptions& options) {
+                           const NearestData& data, const LocalizationOptions& options) {
   return evaluate_energy(model, visible, T_sensor_model, data, options).energy;
 }
 
@@ -154,7 +154,7 @@ EnergyGradient energy_gradient(const EnergyEvaluation& evaluation, const Eigen::
 }
 
 Localization localize(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start,
-                      const NearestDataPoint& data, const LocalizationOptions& options) {
+                      const NearestData& data, const LocalizationOptions& options) {
   assert(options.sigma > 0.0 && options.translation_step > 0.0 && options.rotation_step > 0.0 &&
          options.most_rounds >= 1);
   Refinement refinement(model, sphere, start, data, options);

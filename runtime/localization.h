@@ -8,7 +8,7 @@
 #include "common/pose.h"
 #include "common/viewing_sphere.h"
 #include "runtime/foresight.h"
-#include "runtime/nearest_data_point.h"
+#include "runtime/nearest_data.h"
 
 namespace foresight {
 
@@ -49,13 +49,13 @@ struct EnergyEvaluation {
 // E(q) of eq. (9) over fixed visible points: one search for a nearest data point each. 0 when there are none.
 // nearby: an evaluation of the same visible points at a pose not far away; the searches start from its nearest points.
 [[nodiscard]] EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<int>& visible,
-                                               const Pose& T_sensor_model, const NearestDataPoint& data,
+                                               const Pose& T_sensor_model, const NearestData& data,
                                                const LocalizationOptions& options,
                                                const EnergyEvaluation* nearby = nullptr);
 
 // Its energy alone.
 [[nodiscard]] double localization_energy(const CompiledModel& model, const std::vector<int>& visible,
-                                         const Pose& T_sensor_model, const NearestDataPoint& data,
+                                         const Pose& T_sensor_model, const NearestData& data,
                                          const LocalizationOptions& options);
 
 // Derivatives of E, eq. (7), with the nearest data points of the evaluation: they need no search of their own.
@@ -71,6 +71,6 @@ struct EnergyGradient {
 // aspect fixed within each, until neither takes a step. sphere: ViewingSphere(80).
 // A start in which nothing is visible is returned as it is, with energy 0; verification accepts no such pose.
 [[nodiscard]] Localization localize(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start,
-                                    const NearestDataPoint& data, const LocalizationOptions& options);
+                                    const NearestData& data, const LocalizationOptions& options);
 
 }  // namespace foresight

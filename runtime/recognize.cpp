@@ -6,6 +6,8 @@
 #include "common/errors.h"
 #include "runtime/highest_confidence_first.h"
 #include "runtime/hypothesis_cliques.h"
+#include "runtime/nearest_data_cell.h"
+#include "runtime/nearest_data_point.h"
 #include "runtime/pose_covariance.h"
 #include "runtime/scan_context.h"
 #include "runtime/two_way_search.h"
@@ -67,6 +69,12 @@ void check_method(const RecognizeOptions& options, const Database& database, con
 
 namespace {
 
+// The paper searches as far as there are data, the two-way method within a short reach.
+std::unique_ptr<const NearestData> nearest_data(const RangeImage& image, const PinholeCamera& camera, Method method) {
+  if (method == Method::paper) return std::make_unique<NearestDataPoint>(image);
+  return std::make_unique<NearestDataCell>(image, camera);
+}
+
 // Sections III to V.
 void recognize_as_published(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,
                             RecognitionResult& result) {
@@ -122,8 +130,8 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   result.statistics.regions = static_cast<int>(regions.size());
   result.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());
   if (!regions.empty()) {
-    const ScanContext scan{image, camera, database, regions, NearestDataPoint(image)};
-    watch.lap(result.milliseconds.localize);  // the k-d tree serves localization
+    const ScanContext scan{image, camera, database, regions, nearest_data(image, camera, options.method)};
+    watch.lap(result.milliseconds.localize);  // which the k-d tree serves
     if (options.method == Method::paper) {
       recognize_as_published(scan, options, deadline, result);
     } else {

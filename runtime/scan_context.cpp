@@ -5,10 +5,10 @@ namespace foresight {
 RefinedPose refine(const ScanContext& scan, const CompiledModel& model, const Pose& start,
                    const RecognizeOptions& options, RecognitionResult& result, Stopwatch& watch) {
   RefinedPose refined;
-  refined.localization = localize(model, scan.sphere, start, scan.data, localization_options(options));
+  refined.localization = localize(model, scan.sphere, start, *scan.data, localization_options(options));
   watch.lap(result.milliseconds.localize);
   refined.verification = verify(model, scan.sphere, refined.localization.T_sensor_model, scan.image, scan.camera,
-                                scan.data, verification_options(options));
+                                *scan.data, verification_options(options));
   ++result.statistics.verifications;
   result.statistics.energy_evaluations += refined.localization.energy_evaluations;
   watch.lap(result.milliseconds.verify);

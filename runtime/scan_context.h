@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <vector>
 
 #include "common/camera.h"
@@ -9,7 +10,7 @@
 #include "common/region_attributes.h"
 #include "common/viewing_sphere.h"
 #include "runtime/database.h"
-#include "runtime/nearest_data_point.h"
+#include "runtime/nearest_data.h"
 #include "runtime/recognize.h"
 
 namespace foresight {
@@ -19,7 +20,7 @@ struct ScanContext {
   const PinholeCamera& camera;
   const Database& database;
   const std::vector<DescribedRegion>& regions;
-  NearestDataPoint data;
+  std::unique_ptr<const NearestData> data;
   ViewingSphere sphere{kAspectCells};
 };
 

@@ -30,7 +30,7 @@ Localization localize_and_settle(const ScanContext& scan, const LabelledScan& la
   LocalizationOptions localization = localization_options(options);
   localization.reach = kReach;
   localization.most_rounds = kMostRounds;
-  Localization localized = localize(compiled, scan.sphere, start, scan.data, localization);
+  Localization localized = localize(compiled, scan.sphere, start, *scan.data, localization);
   const Pose settled = settle(scan, model, localized.T_sensor_model, settling);
   EvidenceOptions fine;
   fine.distance = agreeing_distance(labelled.sensor);

@@ -233,7 +233,7 @@ class TwoWaySearch {
     const CanonicalPose reported = canonical_choice(model, candidate.pose());
     RefinedPose pose{candidate.localization, {}};
     pose.localization.T_sensor_model = reported.T_sensor_model;
-    pose.verification = verify(model, scan_.sphere, reported.T_sensor_model, scan_.image, scan_.camera, scan_.data,
+    pose.verification = verify(model, scan_.sphere, reported.T_sensor_model, scan_.image, scan_.camera, *scan_.data,
                                verification_options(options_));
     Detection detection = to_detection(model, pose);
     detection.rank = candidate.rank;

@@ -1,6 +1,8 @@
 #include "runtime/verification.h"
 
 #include <cassert>
+#include <cmath>
+#include <limits>
 
 #include "runtime/localization.h"
 
@@ -34,7 +36,7 @@ double coherent_fraction(const SurfaceTemplate& surface, const std::vector<int>&
 }  // namespace
 
 Verification verify(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model,
-                    const RangeImage& image, const PinholeCamera& camera, const NearestDataPoint& data,
+                    const RangeImage& image, const PinholeCamera& camera, const NearestData& data,
                     const VerificationOptions& options) {
   assert(camera.rows == image.rows && camera.columns == image.columns);
   const std::vector<int> visible = visible_points(model, sphere, T_sensor_model);
@@ -42,13 +44,15 @@ Verification verify(const CompiledModel& model, const ViewingSphere& sphere, con
   verification.visible = static_cast<int>(visible.size());
   if (visible.empty()) return verification;
 
+  // Distances up to the limit match; nearer than the next number is just that.
+  const float reach = std::nextafter(static_cast<float>(options.match_distance), std::numeric_limits<float>::max());
   std::vector<Sight> sight(model.surface.points.size(), Sight::hidden);
   int matched = 0;
   int occluding = 0;
   for (const int i : visible) {
     const auto index = static_cast<std::size_t>(i);
     const Eigen::Vector3d point = T_sensor_model * model.surface.points[index].position.cast<double>();
-    const bool near = static_cast<double>(data.find(point.cast<float>()).distance) <= options.match_distance;
+    const bool near = data.find_within(point.cast<float>(), reach).index >= 0;
     sight[index] = near ? Sight::matched : Sight::unmatched;
     matched += near ? 1 : 0;
     occluding += occludes(point, image, camera, options.match_distance) ? 1 : 0;

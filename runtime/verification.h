@@ -8,7 +8,7 @@
 #include "common/pose.h"
 #include "common/range_image.h"
 #include "common/viewing_sphere.h"
-#include "runtime/nearest_data_point.h"
+#include "runtime/nearest_data.h"
 
 namespace foresight {
 
@@ -30,7 +30,7 @@ struct Verification {
 
 // sphere: ViewingSphere(80). camera: of the image. With no visible point nothing is accepted.
 [[nodiscard]] Verification verify(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model,
-                                  const RangeImage& image, const PinholeCamera& camera, const NearestDataPoint& data,
+                                  const RangeImage& image, const PinholeCamera& camera, const NearestData& data,
                                   const VerificationOptions& options);
 
 }  // namespace foresight

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/random.h"
+#include "runtime/nearest_data_point.h"
 #include "runtime/robust_loss.h"
 #include "tests/runtime/box_scene.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "runtime/nearest_data_cell.h"
 #include "tests/runtime/learned_database.h"
 
 namespace foresight {
@@ -33,7 +34,7 @@ struct Scene {
 
   explicit Scene(const RangeImage& image)
       : seen(image),
-        context{seen.image, camera, database(), seen.regions, NearestDataPoint(seen.image)},
+        context{seen.image, camera, database(), seen.regions, std::make_unique<NearestDataCell>(seen.image, camera)},
         labelled(seen.labelled()),
         settling(database(), labelled, settling_options(seen.sensor)) {}
   Scene(const Scene&) = delete;
@@ -44,7 +45,7 @@ struct Scene {
     LocalizationOptions options = localization_options({});
     options.reach = 12.0;  // as settled localization has them
     options.most_rounds = 12;
-    return localize(box(), context.sphere, start, context.data, options);
+    return localize(box(), context.sphere, start, *context.data, options);
   }
   // How much the scan agrees, less how much it disagrees.
   [[nodiscard]] double balance(const Pose& pose) const {

@@ -10,6 +10,7 @@
 
 #include "runtime/canonical_pose.h"
 #include "runtime/interpenetration.h"
+#include "runtime/nearest_data_cell.h"
 #include "runtime/pose_evidence.h"
 #include "runtime/rendering.h"
 #include "tests/images.h"
@@ -172,7 +173,7 @@ RecognitionResult search(const Database& database, const RangeImage& image, cons
                          const RecognizeOptions& options = {}, const Deadline& deadline = {}) {
   const PinholeCamera& of_sensor = database.content().sensor.camera;
   const auto regions = extract_regions(image, of_sensor, database.content().segmentation);
-  const ScanContext scan{image, of_sensor, database, regions, NearestDataPoint(image)};
+  const ScanContext scan{image, of_sensor, database, regions, std::make_unique<NearestDataCell>(image, of_sensor)};
   RecognitionResult result;
   search_two_way(scan, options, deadline, result, two_way);
   return result;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/localization.h"
+#include "runtime/nearest_data_point.h"
 #include "tests/runtime/box_scene.h"
 
 namespace foresight {
