@@ -12,6 +12,7 @@ constexpr std::size_t kFewestOfFace = 4;  // samples of a face in sight, if it h
 constexpr double kStay = 0.02;            // weight of the pose as it is, against 1 for all planes together
 constexpr std::size_t kStretch = 24;      // samples after which a pose may be given up, if by then
 constexpr double kHopeless = 0.6;         // of the cells looked at speak against it
+constexpr double kDoubtOfOne = 1.0;       // by which one sample may mislead about all
 constexpr double kLeastShare = 1.0 / 3.0;
 
 void add_support(std::vector<FaceSupport>& supports, int region, int face, double cells) {
@@ -31,7 +32,7 @@ PoseChecker::PoseChecker(const Database& database, const LabelledScan& scan, con
     : database_(database),
       scan_(scan),
       options_(options),
-      least_cosine_(std::cos(scan.sensor.largest_incidence)),
+      squared_least_cosine_(static_cast<float>(std::pow(std::cos(scan.sensor.largest_incidence), 2))),
       of_region_(scan.regions.size(), 0.0) {}
 
 // Points in the middle of faces, evenly from the list of each; edge points only where a face has few others.
@@ -64,7 +65,7 @@ std::vector<PoseChecker::Sample> PoseChecker::choose_samples(const CompiledModel
                                          static_cast<double>(std::max<std::size_t>(1, count)));
     for (std::size_t k = 0; k < count; ++k) {
       const auto point = static_cast<std::size_t>(points[(2 * k + 1) * points.size() / (2 * count)]);
-      chosen.push_back({model.surface.points[point].position, faces[f], area});
+      chosen.push_back({model.surface.points[point].position, static_cast<int>(f), area});
     }
   }
   // Every stretch of the list looks at all faces, so that a hopeless pose shows soon.
@@ -86,53 +87,76 @@ const std::vector<PoseChecker::Sample>& PoseChecker::samples_of(int model, int a
   return at->second;
 }
 
-PoseCheck PoseChecker::check(int model, const Pose& T_sensor_model) {
+void PoseChecker::pose_faces(const CompiledModel& model, const std::vector<int>& faces, const Pose& T_sensor_model) {
+  posed_.clear();
+  for (const int index : faces) {
+    const ModelFace& face = model.faces[static_cast<std::size_t>(index)];
+    const Eigen::Vector3d normal = T_sensor_model.rotation * face.normal;
+    posed_.push_back({normal.cast<float>(), static_cast<float>(-normal.dot(T_sensor_model.translation) - face.offset)});
+  }
+}
+
+// A ray with z = 1 meets a face under -normal . ray = height / z: the point lies on the face's plane.
+void PoseChecker::look_at(const Sample& sample, const Eigen::Vector3f& point, int face, PoseCheck& check) {
+  const PosedFace& posed = posed_[static_cast<std::size_t>(sample.face)];
+  if (!(point.z() > 0.0F) || !(posed.height > 0.0F)) return;
+  if (posed.height * posed.height <= squared_least_cosine_ * point.squaredNorm()) return;
+  const PinholeCamera& camera = scan_.camera;
+  const float scale = 1.0F / point.z();
+  const float facing = posed.height * scale;
+  const auto focals = static_cast<float>(camera.fx * camera.fy);
+  const double cells = sample.area * facing * focals * scale * scale;
+  check.total += cells;
+  const float column = static_cast<float>(camera.fx) * point.x() * scale + static_cast<float>(camera.cx) + 0.5F;
+  const float row = static_cast<float>(camera.fy) * point.y() * scale + static_cast<float>(camera.cy) + 0.5F;
+  if (!(column >= 0.0F && row >= 0.0F && column < static_cast<float>(camera.columns) &&
+        row < static_cast<float>(camera.rows)))
+    return;
+  const int cell = scan_.image.cell(static_cast<int>(row), static_cast<int>(column));
+  const float across = (scan_.image[cell].z() - point.z()) * facing;
+  const auto distance = static_cast<float>(options_.distance);
+  if (std::isnan(across)) return;  // no data
+  if (across < -distance) {
+    check.hidden += cells;
+    return;
+  }
+  const int region = scan_.labels[static_cast<std::size_t>(cell)] - 1;
+  const auto tilted = [&] {
+    const Eigen::Vector3d& normal = scan_.regions[static_cast<std::size_t>(region)].region.normal;
+    return normal.cast<float>().dot(posed.normal) < static_cast<float>(options_.normal_cosine);
+  };
+  if (across > distance || scan_.taken[static_cast<std::size_t>(cell)] || (region >= 0 && tilted())) {
+    check.contradicted += cells;
+    return;
+  }
+  check.explained += cells;
+  if (region < 0) {
+    check.owned += cells;
+    return;
+  }
+  add_support(check.supports, region, face, cells);
+  of_region_[static_cast<std::size_t>(region)] += cells;
+}
+
+PoseCheck PoseChecker::check(int model, const Pose& T_sensor_model, double least_quality) {
   PoseCheck check;
   const CompiledModel& compiled = database_.models()[static_cast<std::size_t>(model)];
   const Eigen::Vector3d to_sensor = -(T_sensor_model.rotation.transpose() * (T_sensor_model * compiled.centre));
   if (!(to_sensor.norm() > 0.0)) return check;
-  const PinholeCamera& camera = scan_.camera;
+  const int aspect = sphere_.cell_of(to_sensor.normalized());
+  const std::vector<int>& faces = compiled.surface.aspects[static_cast<std::size_t>(aspect)];
+  pose_faces(compiled, faces, T_sensor_model);
+  const Eigen::Matrix3f rotation = T_sensor_model.rotation.cast<float>();
+  const Eigen::Vector3f translation = T_sensor_model.translation.cast<float>();
   std::size_t looked_at = 0;
-  for (const Sample& sample : samples_of(model, sphere_.cell_of(to_sensor.normalized()))) {
-    if (looked_at++ % kStretch == 0 && check.contradicted > kHopeless * check.total) break;
-    const Eigen::Vector3d point = T_sensor_model * sample.position.cast<double>();
-    if (!(point.z() > 0.0)) continue;
-    const Eigen::Vector3d ray = point / point.z();
-    const Eigen::Vector3d normal =
-        T_sensor_model.rotation * compiled.faces[static_cast<std::size_t>(sample.face)].normal;
-    const double facing = -normal.dot(ray);
-    if (facing <= least_cosine_ * ray.norm()) continue;
-    const double cells = static_cast<double>(sample.area) * facing * camera.fx * camera.fy / (point.z() * point.z());
-    check.total += cells;
-    const int cell = camera.cell_of(point);
-    if (cell < 0 || !scan_.image.valid(cell)) continue;
-    const double across = (static_cast<double>(scan_.image[cell].z()) - point.z()) * facing;
-    if (across < -options_.distance) {
-      check.hidden += cells;
-      continue;
+  for (const Sample& sample : samples_of(model, aspect)) {
+    if (looked_at++ % kStretch == 0 && looked_at > 1) {
+      // What the samples so far leave to hope for: they are a few of all, evenly spread.
+      const double doubt = kDoubtOfOne / std::sqrt(static_cast<double>(looked_at - 1));
+      if (check.explained - check.contradicted < (least_quality - doubt) * check.total) break;
+      if (check.contradicted > kHopeless * check.total) break;
     }
-    if (across > options_.distance) {
-      check.contradicted += cells;
-      continue;
-    }
-    if (scan_.taken[static_cast<std::size_t>(cell)]) {
-      check.contradicted += cells;
-      continue;
-    }
-    const int region = scan_.labels[static_cast<std::size_t>(cell)] - 1;
-    if (region < 0) {
-      check.explained += cells;
-      check.owned += cells;
-      continue;
-    }
-    const auto r = static_cast<std::size_t>(region);
-    if (scan_.regions[r].region.normal.dot(normal) < options_.normal_cosine) {
-      check.contradicted += cells;
-      continue;
-    }
-    check.explained += cells;
-    add_support(check.supports, region, sample.face, cells);
-    of_region_[r] += cells;
+    look_at(sample, rotation * sample.position + translation, faces[static_cast<std::size_t>(sample.face)], check);
   }
   for (const FaceSupport& support : check.supports) {
     double& explained = of_region_[static_cast<std::size_t>(support.region)];

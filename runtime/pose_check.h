@@ -44,24 +44,36 @@ class PoseChecker {
  public:
   PoseChecker(const Database& database, const LabelledScan& scan, const PoseCheckOptions& options = {});
 
-  [[nodiscard]] PoseCheck check(int model, const Pose& T_sensor_model);
+  // A pose of which the first samples show that its quality hardly reaches `least_quality` is looked at no further:
+  // what is counted then is what they showed.
+  [[nodiscard]] PoseCheck check(int model, const Pose& T_sensor_model, double least_quality = kAnyQuality);
+
+  static constexpr double kAnyQuality = -1.0;
 
  private:
   struct Sample {
     Eigen::Vector3f position;  // model frame. Unit: mm.
-    int face = 0;
-    float area = 0.0F;  // that it stands for. Unit: mm^2.
+    int face = 0;              // its place in the aspect
+    float area = 0.0F;         // that it stands for. Unit: mm^2.
+  };
+  // A face at the pose looked at.
+  struct PosedFace {
+    Eigen::Vector3f normal;  // sensor frame
+    float height = 0.0F;     // of the camera over its plane. Unit: mm.
   };
   const std::vector<Sample>& samples_of(int model, int aspect);
   [[nodiscard]] std::vector<Sample> choose_samples(const CompiledModel& model, const std::vector<int>& faces) const;
+  void pose_faces(const CompiledModel& model, const std::vector<int>& faces, const Pose& T_sensor_model);
+  void look_at(const Sample& sample, const Eigen::Vector3f& point, int face, PoseCheck& check);
 
   const Database& database_;
   const LabelledScan& scan_;
   PoseCheckOptions options_;
   ViewingSphere sphere_{kAspectCells};
-  double least_cosine_ = 0.0;
+  float squared_least_cosine_ = 0.0F;
   std::map<std::pair<int, int>, std::vector<Sample>> samples_;  // by model and aspect
   std::vector<double> of_region_;                               // scratch: explained cells
+  std::vector<PosedFace> posed_;                                // scratch: the faces of the aspect
 };
 
 // The pose moved so that the planes of its faces lie in those of the regions that support them: least squares over

@@ -100,12 +100,13 @@ void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const
                    const EvidenceOptions& options, const Visit& visit) {
   const Rendering drawn = render(model, T_sensor_model, scan.camera, std::max(scan.image.rows, scan.image.columns));
   const int reach = scan.sensor.matching_window / 2;
+  const double least_cosine = std::cos(scan.sensor.largest_incidence);
   for (int row = 0; row < drawn.rows; ++row) {
     for (int column = 0; column < drawn.columns; ++column) {
       const auto at = static_cast<std::size_t>(drawn.cell(row, column));
       if (drawn.triangle[at] < 0) continue;
       const DrawnCell cell = drawn_cell(drawn, row, column, scan);
-      if (cell.cosine <= std::cos(scan.sensor.largest_incidence)) continue;  // the sensor gives no data here
+      if (cell.cosine <= least_cosine) continue;  // the sensor gives no data here
       // Depth changes by this much from one cell to the next.
       const double step = drawn.depth[at] / scan.camera.fx / std::max(cell.cosine, 0.05);
       const bool whole = inner(drawn, row, column, options.distance + 3.0 * step) &&
