@@ -228,14 +228,12 @@ class SceneTeacher {
 
   // Refines a start and takes down what its evidence looks like. Whether it came to a right pose.
   bool learn(const Pose& start) {
-    const Pose pose = localize_and_settle(context_, labelled_, 0, start, {}, settling_).T_sensor_model;
-    EvidenceOptions fine;
-    fine.distance = agreeing_distance(labelled_.sensor);
-    const PosedModel posed{model_, pose};
+    const SettledPose settled = localize_and_settle(context_, labelled_, 0, start, {}, settling_);
+    const PosedModel posed{model_, settled.localization.T_sensor_model};
     const double share = truth_ ? same_share(posed, {model_, *truth_}, labelled_.sensor) : 0.0;
     const bool right = share >= kRightShare;
     if (right || is_wrong(posed, share)) {
-      const Features features = evidence_features(gather_evidence(model_, pose, labelled_, fine));
+      const Features features = evidence_features(settled.evidence);
       (right ? lessons_.right : lessons_.wrong).push_back(features);
     }
     return right;

@@ -91,11 +91,32 @@ bool Refinement::rotate() {
   });
 }
 
-// guess: of a data point, -1 = none.
-NearestData::Answer nearest_to(const Eigen::Vector3f& query, int guess, const NearestData& data,
-                               const LocalizationOptions& options) {
-  if (options.reach > 0.0) return data.find_within(query, static_cast<float>(options.reach), guess);
-  return guess < 0 ? data.find(query) : data.find(query, guess);
+constexpr double kAhead = 3.0;  // searches in vain look this much farther, to spare the next ones. Unit: mm.
+
+using Residual = EnergyEvaluation::Residual;
+
+// Of a template point with no data within reach.
+Residual pulled_nowhere(const Eigen::Vector3d& point, double reach, double clearance) {
+  return {point, point, reach, -1, clearance};
+}
+
+// nearby: the same template point at a pose not far away, or null.
+Residual residual_at(const Eigen::Vector3d& point, const Residual* nearby, const NearestData& data, double reach) {
+  const Eigen::Vector3f query = point.cast<float>();
+  const int guess = nearby == nullptr ? -1 : nearby->data_index;
+  NearestData::Answer answer;
+  if (reach > 0.0) {
+    const double clearance = guess >= 0 || nearby == nullptr ? 0.0 : nearby->clearance - (point - nearby->point).norm();
+    if (clearance > reach) return pulled_nowhere(point, reach, clearance);
+    const double farther = guess >= 0 ? reach : reach + kAhead;
+    answer = data.find_within(query, static_cast<float>(farther), guess);
+    if (answer.index < 0 || !(answer.distance < static_cast<float>(reach)))
+      return pulled_nowhere(point, reach, static_cast<double>(answer.distance));
+  } else {
+    answer = guess < 0 ? data.find(query) : data.find(query, guess);
+  }
+  const Eigen::Vector3d nearest = answer.point.cast<double>();
+  return {point, nearest, (point - nearest).norm(), answer.index, 0.0};  // Equation (10)
 }
 
 }  // namespace
@@ -124,11 +145,9 @@ EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<i
   for (std::size_t k = 0; k < visible.size(); ++k) {
     const TemplatePoint& point = model.surface.points[static_cast<std::size_t>(visible[k])];
     const Eigen::Vector3d x = T_sensor_model * point.position.cast<double>();
-    const Eigen::Vector3f query = x.cast<float>();
-    const auto answer = nearest_to(query, nearby == nullptr ? -1 : nearby->residuals[k].data_index, data, options);
-    const Eigen::Vector3d nearest = answer.point.cast<double>();
-    const double z = answer.index < 0 ? options.reach : (x - nearest).norm();  // Equation (10)
-    evaluation.residuals.push_back({x, nearest, z, answer.index});
+    const Residual* before = nearby == nullptr ? nullptr : &nearby->residuals[k];
+    evaluation.residuals.push_back(residual_at(x, before, data, options.reach));
+    const double z = evaluation.residuals.back().distance;
     evaluation.energy += rho(options.loss, z / options.sigma);  // Equation (9)
   }
   return evaluation;

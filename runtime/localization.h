@@ -40,7 +40,8 @@ struct EnergyEvaluation {
     Eigen::Vector3d point;    // x_i(q), the template point in the sensor frame. Unit: mm.
     Eigen::Vector3d nearest;  // its nearest data point. Unit: mm.
     double distance = 0.0;    // z_i(q), eq. (10). Unit: mm.
-    int data_index = 0;       // of the nearest data point, for the next search
+    int data_index = 0;       // of the nearest data point, for the next search; -1: none within reach, and
+    double clearance = 0.0;   // no data are nearer than this. Unit: mm.
   };
   double energy = 0.0;
   std::vector<Residual> residuals;  // in the order of the visible points

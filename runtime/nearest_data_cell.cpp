@@ -121,13 +121,14 @@ struct NearestDataCell::Search {
       look_at(image.cell(r, block_column * kFine), image.cell(r, last_column));
     }
   }
-  void look_at_coarse(int block_row, int block_column) {
+  // Of a coarse block, the fine ones that lie in a window of fine blocks.
+  void look_at_coarse(int block_row, int block_column, const Span& rows, const Span& columns) {
     if (!may_hold(data.coarse_, block_row, block_column)) return;
     constexpr int kInside = kCoarse / kFine;
-    for (int r = block_row * kInside; r < std::min(data.fine_.rows, (block_row + 1) * kInside); ++r) {
-      for (int c = block_column * kInside; c < std::min(data.fine_.columns, (block_column + 1) * kInside); ++c) {
-        look_at_fine(r, c);
-      }
+    const int last_row = std::min(rows.last, block_row * kInside + kInside - 1);
+    const int last_column = std::min(columns.last, block_column * kInside + kInside - 1);
+    for (int r = std::max(rows.first, block_row * kInside); r <= last_row; ++r) {
+      for (int c = std::max(columns.first, block_column * kInside); c <= last_column; ++c) look_at_fine(r, c);
     }
   }
 };
@@ -143,10 +144,14 @@ NearestData::Answer NearestDataCell::find_within(const Eigen::Vector3f& query, f
   const Span middle_column = span_around(search.column, 0.0F, image_.columns);
   search.look_at_fine(middle_row.first / kFine, middle_column.first / kFine);
   const float radius = std::sqrt(search.squared / aside_) / query.z();
-  const Span rows = span_around(search.row, radius / row_step_ + kOffRay, image_.rows);
-  const Span columns = span_around(search.column, radius / column_step_ + kOffRay, image_.columns);
-  for (int r = rows.first / kCoarse; r <= rows.last / kCoarse; ++r) {
-    for (int c = columns.first / kCoarse; c <= columns.last / kCoarse; ++c) search.look_at_coarse(r, c);
+  const auto blocks = [](const Span& cells) { return Span{cells.first / kFine, cells.last / kFine}; };
+  const Span rows = blocks(span_around(search.row, radius / row_step_ + kOffRay, image_.rows));
+  const Span columns = blocks(span_around(search.column, radius / column_step_ + kOffRay, image_.columns));
+  constexpr int kInside = kCoarse / kFine;
+  for (int r = rows.first / kInside; r <= rows.last / kInside; ++r) {
+    for (int c = columns.first / kInside; c <= columns.last / kInside; ++c) {
+      search.look_at_coarse(r, c, rows, columns);
+    }
   }
   if (search.cell < 0) return nothing;
   return {image_[search.cell], search.cell, std::sqrt(search.squared), search.cell};

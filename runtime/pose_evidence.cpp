@@ -15,15 +15,28 @@ constexpr double kLeftOver = 0.2;  // of a region that is explained but for this
 constexpr double kLeftByLocalization = 0.8;  // Unit: mm.
 constexpr double kLeastDistance = 1.5;       // Unit: mm.
 
-// Whether all eight neighbours show the same surface going on: no outline and no inner edge of depth.
-bool inner(const Rendering& drawn, int row, int column, double step) {
+// Whether all eight neighbours show the same surface going on: no outline and no inner edge of depth. largest_step():
+// of depth between neighbours of one surface, asked for where they are not of one triangle.
+template <typename LargestStep>
+bool inner(const Rendering& drawn, int row, int column, const LargestStep& largest_step) {
   if (row < 1 || column < 1 || row + 1 >= drawn.rows || column + 1 >= drawn.columns) return false;
-  const float depth = drawn.depth[static_cast<std::size_t>(drawn.cell(row, column))];
-  for (int r = row - 1; r <= row + 1; ++r) {
-    for (int c = column - 1; c <= column + 1; ++c) {
-      const auto cell = static_cast<std::size_t>(drawn.cell(r, c));
-      if (drawn.triangle[cell] < 0 || std::abs(drawn.depth[cell] - depth) > step) return false;
-    }
+  const auto at = static_cast<std::size_t>(drawn.cell(row, column));
+  const std::size_t above = at - static_cast<std::size_t>(drawn.columns);
+  const std::size_t below = at + static_cast<std::size_t>(drawn.columns);
+  const std::vector<int>& triangle = drawn.triangle;
+  const int own = triangle[at];
+  bool one_triangle = triangle[at - 1] == own && triangle[at + 1] == own;
+  for (const std::size_t middle : {above, below}) {
+    one_triangle =
+        one_triangle && triangle[middle - 1] == own && triangle[middle] == own && triangle[middle + 1] == own;
+  }
+  if (one_triangle) return true;
+  const float most = largest_step();
+  const auto goes_on = [&](std::size_t cell) {
+    return triangle[cell] >= 0 && std::abs(drawn.depth[cell] - drawn.depth[at]) <= most;
+  };
+  for (const std::size_t middle : {above, at, below}) {
+    if (!goes_on(middle - 1) || !goes_on(middle) || !goes_on(middle + 1)) return false;
   }
   return true;
 }
@@ -49,48 +62,31 @@ bool amid_plane(const Rendering& drawn, int row, int column, int reach) {
 
 // A cell of the image in which the object is drawn.
 struct DrawnCell {
-  int cell = 0;        // of the image, -1 beyond it
-  int triangle = 0;    // of the model
-  double depth = 0.0;  // z of the surface drawn. Unit: mm.
-  Eigen::Vector3d normal;
-  double facing = 0.0;  // -normal . ray, with a ray of z = 1: turns a difference of depth into one across the surface
-  double cosine = 0.0;  // of incidence
+  int cell = 0;         // of the image, -1 beyond it
+  int triangle = 0;     // of the model
+  float depth = 0.0F;   // z of the surface drawn. Unit: mm.
+  float facing = 0.0F;  // -normal . ray, with a ray of z = 1: turns a difference of depth into one across the surface
 };
-
-DrawnCell drawn_cell(const Rendering& drawn, int row, int column, const LabelledScan& scan) {
-  const auto at = static_cast<std::size_t>(drawn.cell(row, column));
-  const int image_row = row + drawn.first_row;
-  const int image_column = column + drawn.first_column;
-  const Eigen::Vector3d ray = scan.camera.ray(image_row, image_column);
-  const bool in_image =
-      image_row >= 0 && image_row < scan.image.rows && image_column >= 0 && image_column < scan.image.columns;
-  DrawnCell cell;
-  cell.cell = in_image ? scan.image.cell(image_row, image_column) : -1;
-  cell.triangle = drawn.triangle[at];
-  cell.depth = drawn.depth[at];
-  cell.normal = drawn.normal[static_cast<std::size_t>(drawn.triangle[at])].cast<double>();
-  cell.facing = -cell.normal.dot(ray);
-  cell.cosine = cell.facing / ray.norm();
-  return cell;
-}
 
 enum class Judgement { beyond, missing, front, behind, tilted, explained };
 
-Judgement judge(const DrawnCell& cell, const LabelledScan& scan, const EvidenceOptions& options) {
+Judgement judge(const DrawnCell& cell, const Eigen::Vector3f& normal, const LabelledScan& scan,
+                const EvidenceOptions& options) {
   if (cell.cell < 0) return Judgement::beyond;
   if (!scan.image.valid(cell.cell)) return Judgement::missing;
-  const double across = (static_cast<double>(scan.image[cell.cell].z()) - cell.depth) * cell.facing;
-  if (across > options.distance) return Judgement::behind;
-  if (across < -options.distance) return Judgement::front;
+  const auto distance = static_cast<float>(options.distance);
+  const float depth = scan.image[cell.cell].z();
+  const float across = (depth - cell.depth) * cell.facing;
+  if (across > distance) return Judgement::behind;
+  if (across < -distance) return Judgement::front;
   if (scan.taken[static_cast<std::size_t>(cell.cell)]) return Judgement::tilted;
   const int region = scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
   if (region < 0 ||
-      scan.regions[static_cast<std::size_t>(region)].region.normal.dot(cell.normal) >= options.normal_cosine)
+      scan.regions[static_cast<std::size_t>(region)].region.normal.dot(normal.cast<double>()) >= options.normal_cosine)
     return Judgement::explained;
   // A sensor that matches windows draws a step as a ramp. Data near a steep surface and yet, along the ray, well before
   // it are those of the box that stands flush and hides the side of this one.
-  const bool before =
-      scan.sensor.matching_window > 1 && static_cast<double>(scan.image[cell.cell].z()) < cell.depth - options.distance;
+  const bool before = scan.sensor.matching_window > 1 && depth < cell.depth - distance;
   return before ? Judgement::front : Judgement::tilted;
 }
 
@@ -100,18 +96,30 @@ void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const
                    const EvidenceOptions& options, const Visit& visit) {
   const Rendering drawn = render(model, T_sensor_model, scan.camera, std::max(scan.image.rows, scan.image.columns));
   const int reach = scan.sensor.matching_window / 2;
-  const double least_cosine = std::cos(scan.sensor.largest_incidence);
+  const auto distance = static_cast<float>(options.distance);
+  const auto steepest = static_cast<float>(std::pow(std::cos(scan.sensor.largest_incidence), 2));
   for (int row = 0; row < drawn.rows; ++row) {
+    const int image_row = row + drawn.first_row;
+    const bool row_in_image = image_row >= 0 && image_row < scan.image.rows;
     for (int column = 0; column < drawn.columns; ++column) {
       const auto at = static_cast<std::size_t>(drawn.cell(row, column));
-      if (drawn.triangle[at] < 0) continue;
-      const DrawnCell cell = drawn_cell(drawn, row, column, scan);
-      if (cell.cosine <= least_cosine) continue;  // the sensor gives no data here
-      // Depth changes by this much from one cell to the next.
-      const double step = drawn.depth[at] / scan.camera.fx / std::max(cell.cosine, 0.05);
-      const bool whole = inner(drawn, row, column, options.distance + 3.0 * step) &&
-                         (reach == 0 || amid_plane(drawn, row, column, reach));
-      visit(cell, judge(cell, scan, options), whole);
+      const int triangle = drawn.triangle[at];
+      if (triangle < 0) continue;
+      // A ray with z = 1 meets the surface under -normal . ray = height / depth: the cell lies on the triangle's plane.
+      const float facing = drawn.height[static_cast<std::size_t>(triangle)] / drawn.depth[at];
+      const int image_column = column + drawn.first_column;
+      const auto ray = static_cast<float>(scan.camera.ray(image_row, image_column).squaredNorm());
+      if (facing * facing <= steepest * ray) continue;  // the sensor gives no data here
+      const bool in_image = row_in_image && image_column >= 0 && image_column < scan.image.columns;
+      const DrawnCell cell = {in_image ? scan.image.cell(image_row, image_column) : -1, triangle, drawn.depth[at],
+                              facing};
+      const auto largest_step = [&] {
+        const float cosine = std::max(facing / std::sqrt(ray), 0.05F);
+        return distance + 3.0F * drawn.depth[at] / (static_cast<float>(scan.camera.fx) * cosine);
+      };
+      const bool whole =
+          inner(drawn, row, column, largest_step) && (reach == 0 || amid_plane(drawn, row, column, reach));
+      visit(cell, judge(cell, drawn.normal[static_cast<std::size_t>(triangle)], scan, options), whole);
     }
   }
 }

@@ -58,7 +58,9 @@ void draw(const std::array<const Corner*, 3>& corners, int triangle, const Pinho
           Rendering& rendering) {
   const Vector3d normal = (corners[1]->point - corners[0]->point).cross(corners[2]->point - corners[0]->point);
   const double offset = normal.dot(corners[0]->point);
-  rendering.normal[static_cast<std::size_t>(triangle)] = normal.stableNormalized().cast<float>();
+  const Vector3d unit = normal.stableNormalized();
+  rendering.normal[static_cast<std::size_t>(triangle)] = unit.cast<float>();
+  rendering.height[static_cast<std::size_t>(triangle)] = static_cast<float>(-unit.dot(corners[0]->point));
   if (!(offset < 0.0)) return;  // seen from behind or edge-on
   // Facing triangles run counter-clockwise to the eye; with rows downwards their area in (column, row) is negative.
   const Vector2d& p = corners[0]->image;
@@ -116,6 +118,7 @@ Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const P
   rendering.depth.assign(cells, 0.0F);
   rendering.triangle.assign(cells, -1);
   rendering.normal.assign(model.triangles.size(), Eigen::Vector3f::Zero());
+  rendering.height.assign(model.triangles.size(), 0.0F);
   if (cells == 0) return rendering;
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     const auto& indices = model.triangles[t];

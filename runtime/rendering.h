@@ -19,6 +19,7 @@ struct Rendering {
   std::vector<float> depth;             // z of the nearest surface, row by row. Unit: mm.
   std::vector<int> triangle;            // of the model, -1 where nothing is shown
   std::vector<Eigen::Vector3f> normal;  // by triangle, sensor frame, outward
+  std::vector<float> height;            // by triangle: of the camera over its plane; > 0 where it is drawn. Unit: mm.
 
   [[nodiscard]] int cell(int row, int column) const { return row * columns + column; }
 };

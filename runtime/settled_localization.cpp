@@ -1,5 +1,7 @@
 #include "runtime/settled_localization.h"
 
+#include <utility>
+
 namespace foresight {
 namespace {
 
@@ -24,22 +26,28 @@ Pose settle(const ScanContext& scan, int model, Pose pose, PoseChecker& settling
   return pose;
 }
 
-Localization localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model, const Pose& start,
-                                 const RecognizeOptions& options, PoseChecker& settling) {
+SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model, const Pose& start,
+                                const RecognizeOptions& options, PoseChecker& settling) {
   const CompiledModel& compiled = scan.database.models()[static_cast<std::size_t>(model)];
   LocalizationOptions localization = localization_options(options);
   localization.reach = kReach;
   localization.most_rounds = kMostRounds;
-  Localization localized = localize(compiled, scan.sphere, start, *scan.data, localization);
-  const Pose settled = settle(scan, model, localized.T_sensor_model, settling);
+  SettledPose result;
+  result.localization = localize(compiled, scan.sphere, start, *scan.data, localization);
+  Pose& pose = result.localization.T_sensor_model;
   EvidenceOptions fine;
   fine.distance = agreeing_distance(labelled.sensor);
-  const auto balance = [&](const Pose& pose) {
-    const PoseEvidence evidence = gather_evidence(compiled, pose, labelled, fine);
+  const auto balance = [](const PoseEvidence& evidence) {
     return evidence.owned - evidence.behind - evidence.tilted - evidence.front;
   };
-  if (balance(settled) > balance(localized.T_sensor_model)) localized.T_sensor_model = settled;
-  return localized;
+  result.evidence = gather_evidence(compiled, pose, labelled, fine);
+  const Pose settled = settle(scan, model, pose, settling);
+  PoseEvidence at_settled = gather_evidence(compiled, settled, labelled, fine);
+  if (balance(at_settled) > balance(result.evidence)) {
+    pose = settled;
+    result.evidence = std::move(at_settled);
+  }
+  return result;
 }
 
 }  // namespace foresight

@@ -16,12 +16,17 @@ inline constexpr double kStartDistance = 8.0;
 // The pose moved onto the planes it touches, a few times over.
 [[nodiscard]] Pose settle(const ScanContext& scan, int model, Pose pose, PoseChecker& settling);
 
+struct SettledPose {
+  Localization localization;
+  PoseEvidence evidence;  // at its pose, of data within agreeing_distance
+};
+
 // Localization ends within its steps of a millimetre and a degree; the planes of regions, fitted to hundreds of cells,
 // know better. The settled pose is taken where the scan agrees with it more. Template points without data near pull
 // nowhere (LocalizationOptions::reach): starts are near, and searches for far data are most of the time at wrong ones.
 // settling: of this scan, with settling_options.
-[[nodiscard]] Localization localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model,
-                                               const Pose& start, const RecognizeOptions& options,
-                                               PoseChecker& settling);
+[[nodiscard]] SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model,
+                                              const Pose& start, const RecognizeOptions& options,
+                                              PoseChecker& settling);
 
 }  // namespace foresight

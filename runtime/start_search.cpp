@@ -13,6 +13,7 @@ namespace foresight {
 namespace {
 
 constexpr int kRefits = 2;
+constexpr double kHalfAsWell = 0.5;
 constexpr double kLeastVolume = 0.1;  // of the parallelepiped of three unit normals: less hardly fixes a point
 
 }  // namespace
@@ -65,14 +66,18 @@ void StartSearch::look_for_rivals(int region, int second) {
   for (std::size_t i = 0; i < std::min(most, singles.size()); ++i) try_single(singles[i]);
 }
 
-PoseCheck StartSearch::look(int model, const Pose& pose) {
+PoseCheck StartSearch::look(int model, const Pose& pose, double least_quality) {
   ++counts_.checks;
-  return checker_.check(model, pose);
+  return checker_.check(model, pose, least_quality);
 }
+
+// Settling may make a start look better, but one that looks half as well as any that ever came to something does not
+// become one.
+double StartSearch::least_quality(int index) const { return kHalfAsWell * model(index).acceptance.least_quality; }
 
 // Keeps the pose in `best` where it looks better.
 void StartSearch::consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const std::vector<int>& regions) {
-  PoseCheck check = look(best.model, pose);
+  PoseCheck check = look(best.model, pose, std::max(best.quality, least_quality(best.model)));
   const double quality = check.quality();
   if (quality <= best.quality) return;
   best.quality = quality;
@@ -158,10 +163,10 @@ std::optional<double> StartSearch::rate_third(const MatchPair& pair, const Rated
 
 // Settles a start on the planes it touches and keeps it, once for all starts that settle together.
 void StartSearch::keep(StartPose start, PoseCheck check) {
-  if (!(start.quality > 0.0)) return;
+  if (!(start.quality > least_quality(start.model))) return;
   for (int i = 0; i < kRefits; ++i) {
     const Pose refitted = refit_to_planes(model(start.model), start.T_sensor_model, check, regions_.regions);
-    PoseCheck at_refitted = look(start.model, refitted);
+    PoseCheck at_refitted = look(start.model, refitted, start.quality);
     if (at_refitted.quality() < start.quality) break;
     start.T_sensor_model = refitted;
     start.quality = at_refitted.quality();

@@ -27,8 +27,8 @@ struct StartPose {
 };
 
 struct StartSearchOptions {
-  int most_pairs = 4000;       // hypotheses of two or three regions looked at. Limit: >= 0.
-  double least_rating = 0.0;   // of these
+  int most_pairs = 2000;       // hypotheses of two or three regions looked at. Limit: >= 0.
+  double least_rating = 4.0;   // of these
   int most_rivals = 200;       // pairs, and as many single matches, looked at for the same regions. Limit: >= 0.
   int most_thirds = 2;         // third regions tried for a pair
   double same_distance = 4.0;  // starts this near, and
@@ -69,7 +69,8 @@ class StartSearch {
   [[nodiscard]] const ModelFace& face(const RatedMatch& match) const {
     return model(match.model).faces[static_cast<std::size_t>(match.face)];
   }
-  PoseCheck look(int model, const Pose& pose);
+  PoseCheck look(int model, const Pose& pose, double least_quality);
+  [[nodiscard]] double least_quality(int index) const;
   void consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const std::vector<int>& regions);
   void try_pair(const MatchPair& pair);
   void try_single(const RatedMatch& match);

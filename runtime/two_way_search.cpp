@@ -132,12 +132,13 @@ class TwoWaySearch {
     Candidate candidate;
     candidate.start = start;
     candidate.rank = order_;
-    candidate.localization = localize_and_settle(scan_, labelled_, start_pose(start).model, from, options_, settling_);
+    const SettledPose settled =
+        localize_and_settle(scan_, labelled_, start_pose(start).model, from, options_, settling_);
+    candidate.localization = settled.localization;
     ++result_.statistics.verifications;
     result_.statistics.energy_evaluations += candidate.localization.energy_evaluations;
     watch_.lap(result_.milliseconds.localize);
-    candidate.probability = probability_right(model_of(start).acceptance, evidence(start, candidate.pose()));
-    watch_.lap(result_.milliseconds.verify);
+    candidate.probability = probability_right(model_of(start).acceptance, settled.evidence);
     return candidate;
   }
 

@@ -40,7 +40,7 @@ struct Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  Localization settled(const Pose& start) { return localize_and_settle(context, labelled, 0, start, {}, settling); }
+  Localization settled(const Pose& start) { return localize_and_settle(context, labelled, 0, start, {}, settling).localization; }
   [[nodiscard]] Localization plain(const Pose& start) const {
     LocalizationOptions options = localization_options({});
     options.reach = 12.0;  // as settled localization has them

@@ -113,7 +113,7 @@ TEST(StartSearch, starts_of_three_regions_have_a_face_for_each_of_them) {
       }
     }
   }
-  EXPECT_GT(regions, 10);
+  EXPECT_GT(regions, 6);
   EXPECT_GE(faced, 0.8 * regions);
 }
 
