@@ -10,13 +10,22 @@
 namespace foresight {
 namespace {
 
+// Template points are listed face by face: every so many of them lie all over the surface.
+std::vector<int> evenly_chosen(std::vector<int> points, int most) {
+  const auto count = static_cast<std::size_t>(most);
+  if (most == 0 || points.size() <= count) return points;
+  for (std::size_t k = 0; k < count; ++k) points[k] = points[k * points.size() / count];
+  points.resize(count);
+  return points;
+}
+
 // What one refinement carries along.
 class Refinement {
  public:
   Refinement(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start, const NearestData& data,
              const LocalizationOptions& options)
       : model_(model), sphere_(sphere), data_(data), options_(options), pose_(start) {
-    look(visible_points(model_, sphere_, pose_));
+    look(points_in_sight());
   }
 
   // The two line searches of the pseudo-code. Each says whether it took a step.
@@ -25,12 +34,15 @@ class Refinement {
 
   // V(q) of the current pose. E(q) is computed anew only when V(q) is another one: else it is known from the last step.
   void update_aspect() {
-    std::vector<int> visible = visible_points(model_, sphere_, pose_);
+    std::vector<int> visible = points_in_sight();
     if (visible != visible_) look(std::move(visible));
   }
   [[nodiscard]] Localization result() const { return {pose_, current_.energy, evaluations_}; }
 
  private:
+  [[nodiscard]] std::vector<int> points_in_sight() const {
+    return evenly_chosen(visible_points(model_, sphere_, pose_), options_.most_points);
+  }
   void look(std::vector<int> visible) {
     visible_ = std::move(visible);
     current_ = evaluate(pose_, nullptr);

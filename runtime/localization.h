@@ -20,6 +20,8 @@ struct LocalizationOptions {
   // Template points without data this near pull nowhere: beyond the paper, where each is pulled to its nearest data
   // point however far. Searches end sooner; 0 = the paper's. Unit: mm. Limit: >= 0.
   double reach = 0.0;
+  // So many of the visible template points take part, evenly chosen; 0 = the paper's, all. Limit: >= 0.
+  int most_points = 0;
   int most_rounds = 50;  // the paper's UNTIL may cycle when the aspect changes: a cap on its rounds. Limit: >= 1.
 };
 

@@ -8,6 +8,7 @@ namespace {
 constexpr int kSettlings = 3;
 constexpr double kReach = 12.0;  // Unit: mm.
 constexpr int kMostRounds = 12;
+constexpr int kMostPoints = 160;
 constexpr double kLocalizationError = 1.0;  // one step. Unit: mm.
 
 }  // namespace
@@ -32,6 +33,7 @@ SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& lab
   LocalizationOptions localization = localization_options(options);
   localization.reach = kReach;
   localization.most_rounds = kMostRounds;
+  localization.most_points = kMostPoints;
   SettledPose result;
   result.localization = localize(compiled, scan.sphere, start, *scan.data, localization);
   Pose& pose = result.localization.T_sensor_model;
