@@ -1,27 +1,36 @@
 #include "common/viewing_sphere.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
-
-#include <Eigen/Geometry>
 
 #include "common/errors.h"
 
 namespace foresight {
 namespace {
 
-using Triangle = std::array<Eigen::Vector3d, 3>;
+using Triangle = std::array<Eigen::Vector3d, 3>;  // corners
+using Sides = std::array<Eigen::Vector3d, 3>;     // planes
 
 // The regular icosahedron, outward counter-clockwise.
 std::vector<Triangle> icosahedron() {
   const double g = (1.0 + std::sqrt(5.0)) / 2.0;
-  const std::array<Eigen::Vector3d, 12> v = {
-      Eigen::Vector3d(-1, g, 0), {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-      {0, -1, -g},               {0, 1, -g}, {g, 0, -1}, {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  constexpr int corners[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+  const std::array<Eigen::Vector3d, 12> v = {Eigen::Vector3d(-1, g, 0),
+                                             {1, g, 0},
+                                             {-1, -g, 0},
+                                             {1, -g, 0},
+                                             {0, -1, g},
+                                             {0, 1, g},
+                                             {0, -1, -g},
+                                             {0, 1, -g},
+                                             {g, 0, -1},
+                                             {g, 0, 1},
+                                             {-g, 0, -1},
+                                             {-g, 0, 1}};
+  constexpr int corners[20][3] = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
                                   {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                                  {3, 8, 9},  {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+                                  {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   std::vector<Triangle> triangles;
   for (const auto& c : corners) {
     triangles.push_back({v[static_cast<std::size_t>(c[0])].normalized(), v[static_cast<std::size_t>(c[1])].normalized(),
@@ -46,12 +55,18 @@ std::vector<Triangle> subdivide(const std::vector<Triangle>& coarse) {
 }
 
 // How far inside the spherical triangle a direction lies: negative outside its nearest edge.
-double inside(const Triangle& t, const Eigen::Vector3d& direction) {
-  return std::min({t[0].cross(t[1]).dot(direction), t[1].cross(t[2]).dot(direction), t[2].cross(t[0]).dot(direction)});
+double inside(const Sides& sides, const Eigen::Vector3d& direction) {
+  return std::min({sides[0].dot(direction), sides[1].dot(direction), sides[2].dot(direction)});
+}
+
+std::vector<Sides> sides_of(const std::vector<Triangle>& triangles) {
+  std::vector<Sides> sides;
+  for (const Triangle& t : triangles) sides.push_back({t[0].cross(t[1]), t[1].cross(t[2]), t[2].cross(t[0])});
+  return sides;
 }
 
 // The best of `count` triangles from `first` on; the lower index on a tie.
-int most_inside(const std::vector<Triangle>& level, int first, int count, const Eigen::Vector3d& direction) {
+int most_inside(const std::vector<Sides>& level, int first, int count, const Eigen::Vector3d& direction) {
   int best = first;
   double best_inside = -2.0;
   for (int i = first; i < first + count; ++i) {
@@ -72,9 +87,13 @@ ViewingSphere::ViewingSphere(int cells) {
   if (size != cells) {
     throw UsageError("--views", std::to_string(cells) + " is not 20 * 4^k", "give 20, 80, 320, 1280, 5120 or 20480");
   }
-  levels_.push_back(icosahedron());
-  while (static_cast<int>(levels_.back().size()) < cells) levels_.push_back(subdivide(levels_.back()));
-  for (const Triangle& t : levels_.back()) centres_.push_back((t[0] + t[1] + t[2]).normalized());
+  std::vector<Triangle> triangles = icosahedron();
+  levels_.push_back(sides_of(triangles));
+  while (static_cast<int>(triangles.size()) < cells) {
+    triangles = subdivide(triangles);
+    levels_.push_back(sides_of(triangles));
+  }
+  for (const Triangle& t : triangles) centres_.push_back((t[0] + t[1] + t[2]).normalized());
 }
 
 int ViewingSphere::cell_of(const Eigen::Vector3d& direction) const {

@@ -1,11 +1,11 @@
 // The unit sphere of viewing directions, divided by subdividing an icosahedron: 20 * 4^k triangular cells.
-// 320 = 20 * 16 sample views (Section III) and 80 = 20 * 4 aspects (Section V.A) are two levels of one geodesic division.
+// 320 = 20 * 16 sample views (Section III) and 80 = 20 * 4 aspects (Section V.A) are two levels of one geodesic
+// division.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace foresight {
 
@@ -21,8 +21,8 @@ class ViewingSphere {
   [[nodiscard]] int cell_of(const Eigen::Vector3d& direction) const;
 
  private:
-  using Triangle = std::array<Eigen::Vector3d, 3>;
-  std::vector<std::vector<Triangle>> levels_;  // levels_[0]: the 20 triangles of the icosahedron
+  using Sides = std::array<Eigen::Vector3d, 3>;  // of a triangle: planes through the origin, normals inward
+  std::vector<std::vector<Sides>> levels_;       // levels_[0]: the 20 triangles of the icosahedron
   std::vector<Eigen::Vector3d> centres_;
 };
 

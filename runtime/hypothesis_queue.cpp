@@ -87,6 +87,7 @@ void HypothesisQueue::visit_matches(const Node& node, const Visit& visit) const 
   const Run run_b = run_of(node.b);
   for (std::size_t i = run_a.first; i < run_a.last; ++i) {
     for (std::size_t j = run_b.first; j < run_b.last; ++j) {
+      if (of_a[i].rating + of_b[j].rating + rater_.highest_pair_rating() < least_rating_) continue;
       const FacePair* pair = database_.pair(node.model, of_a[i].face, of_b[j].face);
       if (pair == nullptr) continue;
       visit(Node{of_a[i].rating + of_b[j].rating + rater_.rate(*pair, relation, cut), node.a, node.b, node.model,

@@ -10,6 +10,13 @@
 namespace foresight {
 namespace {
 
+// Cell of the current viewing direction, -1 when there is none.
+int aspect_of(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model) {
+  assert(sphere.size() == kAspectCells);
+  const Eigen::Vector3d direction = -(T_sensor_model.rotation.transpose() * (T_sensor_model * model.centre));
+  return direction.norm() > 0.0 ? sphere.cell_of(direction.normalized()) : -1;
+}
+
 // Template points are listed face by face: every so many of them lie all over the surface.
 std::vector<int> evenly_chosen(std::vector<int> points, int most) {
   const auto count = static_cast<std::size_t>(most);
@@ -25,6 +32,7 @@ class Refinement {
   Refinement(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start, const NearestData& data,
              const LocalizationOptions& options)
       : model_(model), sphere_(sphere), data_(data), options_(options), pose_(start) {
+    aspect_ = aspect_of(model_, sphere_, pose_);
     look(points_in_sight());
   }
 
@@ -34,6 +42,9 @@ class Refinement {
 
   // V(q) of the current pose. E(q) is computed anew only when V(q) is another one: else it is known from the last step.
   void update_aspect() {
+    const int aspect = aspect_of(model_, sphere_, pose_);
+    if (aspect == aspect_) return;
+    aspect_ = aspect;
     std::vector<int> visible = points_in_sight();
     if (visible != visible_) look(std::move(visible));
   }
@@ -60,6 +71,7 @@ class Refinement {
   const NearestData& data_;
   const LocalizationOptions& options_;
   Pose pose_;
+  int aspect_ = -1;           // of the pose that V was last taken from
   std::vector<int> visible_;  // V, fixed during a line search
   EnergyEvaluation current_;  // E at pose_ over visible_
   int evaluations_ = 0;
@@ -134,11 +146,9 @@ Residual residual_at(const Eigen::Vector3d& point, const Residual* nearby, const
 }  // namespace
 
 std::vector<int> visible_points(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model) {
-  assert(sphere.size() == kAspectCells);
-  const Eigen::Vector3d direction = -(T_sensor_model.rotation.transpose() * (T_sensor_model * model.centre));
-  if (!(direction.norm() > 0.0)) return {};
-  const auto cell = static_cast<std::size_t>(sphere.cell_of(direction.normalized()));
-  const std::vector<int>& aspect = model.surface.aspects[cell];
+  const int cell = aspect_of(model, sphere, T_sensor_model);
+  if (cell < 0) return {};
+  const std::vector<int>& aspect = model.surface.aspects[static_cast<std::size_t>(cell)];
   const auto shown = [&aspect](int face) { return std::binary_search(aspect.begin(), aspect.end(), face); };
   std::vector<int> visible;
   for (std::size_t i = 0; i < model.surface.points.size(); ++i) {

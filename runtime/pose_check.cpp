@@ -10,7 +10,7 @@ namespace {
 constexpr double kDoubt = 30.0;           // cells against every pose, as in evidence_features
 constexpr std::size_t kFewestOfFace = 4;  // samples of a face in sight, if it has as many
 constexpr double kStay = 0.02;            // weight of the pose as it is, against 1 for all planes together
-constexpr std::size_t kStretch = 24;      // samples after which a pose may be given up, if by then
+constexpr std::size_t kStretch = 16;      // samples after which a pose may be given up, if by then
 constexpr double kHopeless = 0.6;         // of the cells looked at speak against it
 constexpr double kDoubtOfOne = 1.0;       // by which one sample may mislead about all
 constexpr double kLeastShare = 1.0 / 3.0;
@@ -33,27 +33,37 @@ PoseChecker::PoseChecker(const Database& database, const LabelledScan& scan, con
       scan_(scan),
       options_(options),
       squared_least_cosine_(static_cast<float>(std::pow(std::cos(scan.sensor.largest_incidence), 2))),
+      points_(database.models().size()),
       of_region_(scan.regions.size(), 0.0) {}
 
+const std::vector<PoseChecker::FacePoints>& PoseChecker::points_of(int model) {
+  const CompiledModel& compiled = database_.models()[static_cast<std::size_t>(model)];
+  std::vector<FacePoints>& points = points_[static_cast<std::size_t>(model)];
+  if (!points.empty()) return points;
+  points.resize(compiled.faces.size());
+  for (std::size_t i = 0; i < compiled.surface.points.size(); ++i) {
+    const std::vector<int>& faces = compiled.surface.points[i].faces;
+    for (const int face : faces) {
+      FacePoints& of_face = points[static_cast<std::size_t>(face)];
+      (faces.size() > 1 ? of_face.edge : of_face.middle).push_back(static_cast<int>(i));
+    }
+  }
+  return points;
+}
+
 // Points in the middle of faces, evenly from the list of each; edge points only where a face has few others.
-std::vector<PoseChecker::Sample> PoseChecker::choose_samples(const CompiledModel& model,
-                                                             const std::vector<int>& faces) const {
+std::vector<PoseChecker::Sample> PoseChecker::choose_samples(int index, const std::vector<int>& faces) {
+  const CompiledModel& model = database_.models()[static_cast<std::size_t>(index)];
   std::vector<Sample> chosen;
   std::size_t in_sight = 0;
-  std::vector<std::vector<int>> of_face(faces.size());
-  for (int edges = 0; edges < 2; ++edges) {
-    for (std::size_t i = 0; i < model.surface.points.size(); ++i) {
-      const TemplatePoint& point = model.surface.points[i];
-      if ((point.faces.size() > 1) != (edges == 1)) continue;
-      for (const int face : point.faces) {
-        const auto at = std::lower_bound(faces.begin(), faces.end(), face);
-        if (at == faces.end() || *at != face) continue;
-        std::vector<int>& points = of_face[static_cast<std::size_t>(at - faces.begin())];
-        if (edges == 1 && points.size() >= kFewestOfFace) continue;
-        points.push_back(static_cast<int>(i));
-        ++in_sight;
-      }
-    }
+  std::vector<std::vector<int>> of_face;
+  for (const int face : faces) {
+    const FacePoints& all = points_of(index)[static_cast<std::size_t>(face)];
+    std::vector<int>& points = of_face.emplace_back(all.middle);
+    const std::size_t missing = points.size() < kFewestOfFace ? kFewestOfFace - points.size() : 0;
+    const auto edges = static_cast<std::ptrdiff_t>(std::min(missing, all.edge.size()));
+    points.insert(points.end(), all.edge.begin(), all.edge.begin() + edges);
+    in_sight += points.size();
   }
   const double keep =
       std::min(1.0, static_cast<double>(options_.samples) / static_cast<double>(std::max<std::size_t>(1, in_sight)));
@@ -81,8 +91,8 @@ std::vector<PoseChecker::Sample> PoseChecker::choose_samples(const CompiledModel
 const std::vector<PoseChecker::Sample>& PoseChecker::samples_of(int model, int aspect) {
   const auto [at, added] = samples_.try_emplace({model, aspect});
   if (added) {
-    const CompiledModel& compiled = database_.models()[static_cast<std::size_t>(model)];
-    at->second = choose_samples(compiled, compiled.surface.aspects[static_cast<std::size_t>(aspect)]);
+    const SurfaceTemplate& surface = database_.models()[static_cast<std::size_t>(model)].surface;
+    at->second = choose_samples(model, surface.aspects[static_cast<std::size_t>(aspect)]);
   }
   return at->second;
 }

@@ -61,8 +61,14 @@ class PoseChecker {
     Eigen::Vector3f normal;  // sensor frame
     float height = 0.0F;     // of the camera over its plane. Unit: mm.
   };
+  // Template points of a face: those in its middle, and those on its edges.
+  struct FacePoints {
+    std::vector<int> middle;
+    std::vector<int> edge;
+  };
+  const std::vector<FacePoints>& points_of(int model);
   const std::vector<Sample>& samples_of(int model, int aspect);
-  [[nodiscard]] std::vector<Sample> choose_samples(const CompiledModel& model, const std::vector<int>& faces) const;
+  [[nodiscard]] std::vector<Sample> choose_samples(int model, const std::vector<int>& faces);
   void pose_faces(const CompiledModel& model, const std::vector<int>& faces, const Pose& T_sensor_model);
   void look_at(const Sample& sample, const Eigen::Vector3f& point, int face, PoseCheck& check);
 
@@ -71,6 +77,7 @@ class PoseChecker {
   PoseCheckOptions options_;
   ViewingSphere sphere_{kAspectCells};
   float squared_least_cosine_ = 0.0F;
+  std::vector<std::vector<FacePoints>> points_;                 // by model and face, once asked for
   std::map<std::pair<int, int>, std::vector<Sample>> samples_;  // by model and aspect
   std::vector<double> of_region_;                               // scratch: explained cells
   std::vector<PosedFace> posed_;                                // scratch: the faces of the aspect

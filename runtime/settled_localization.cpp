@@ -19,6 +19,14 @@ PoseCheckOptions settling_options(const SensorModel& sensor) {
   return options;
 }
 
+LocalizationOptions near_localization_options(const RecognizeOptions& options) {
+  LocalizationOptions localization = localization_options(options);
+  localization.reach = kReach;
+  localization.most_rounds = kMostRounds;
+  localization.most_points = kMostPoints;
+  return localization;
+}
+
 Pose settle(const ScanContext& scan, int model, Pose pose, PoseChecker& settling) {
   const CompiledModel& compiled = scan.database.models()[static_cast<std::size_t>(model)];
   for (int i = 0; i < kSettlings; ++i) {
@@ -30,12 +38,8 @@ Pose settle(const ScanContext& scan, int model, Pose pose, PoseChecker& settling
 SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model, const Pose& start,
                                 const RecognizeOptions& options, PoseChecker& settling) {
   const CompiledModel& compiled = scan.database.models()[static_cast<std::size_t>(model)];
-  LocalizationOptions localization = localization_options(options);
-  localization.reach = kReach;
-  localization.most_rounds = kMostRounds;
-  localization.most_points = kMostPoints;
   SettledPose result;
-  result.localization = localize(compiled, scan.sphere, start, *scan.data, localization);
+  result.localization = localize(compiled, scan.sphere, start, *scan.data, near_localization_options(options));
   Pose& pose = result.localization.T_sensor_model;
   EvidenceOptions fine;
   fine.distance = agreeing_distance(labelled.sensor);

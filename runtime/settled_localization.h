@@ -13,6 +13,10 @@ inline constexpr double kStartDistance = 8.0;
 // How a scan is looked at to settle a pose: planes farther away than what localization leaves are other planes.
 [[nodiscard]] PoseCheckOptions settling_options(const SensorModel& sensor);
 
+// How a start that is near is localized: by data within a short reach and a share of the template points, for the
+// planes do the rest. Searches for far data are most of the time at wrong starts.
+[[nodiscard]] LocalizationOptions near_localization_options(const RecognizeOptions& options);
+
 // The pose moved onto the planes it touches, a few times over.
 [[nodiscard]] Pose settle(const ScanContext& scan, int model, Pose pose, PoseChecker& settling);
 
@@ -22,8 +26,7 @@ struct SettledPose {
 };
 
 // Localization ends within its steps of a millimetre and a degree; the planes of regions, fitted to hundreds of cells,
-// know better. The settled pose is taken where the scan agrees with it more. Template points without data near pull
-// nowhere (LocalizationOptions::reach): starts are near, and searches for far data are most of the time at wrong ones.
+// know better. The settled pose is taken where the scan agrees with it more.
 // settling: of this scan, with settling_options.
 [[nodiscard]] SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model,
                                               const Pose& start, const RecognizeOptions& options,

@@ -16,6 +16,12 @@ constexpr int kRefits = 2;
 constexpr double kHalfAsWell = 0.5;
 constexpr double kLeastVolume = 0.1;  // of the parallelepiped of three unit normals: less hardly fixes a point
 
+std::vector<RatedMatch> best_rated(std::vector<RatedMatch> matches) {
+  std::stable_sort(matches.begin(), matches.end(),
+                   [](const RatedMatch& a, const RatedMatch& b) { return a.rating > b.rating; });
+  return matches;
+}
+
 }  // namespace
 
 StartSearch::StartSearch(const Database& database, const LabelledScan& scan, const StartSearchOptions& options,
@@ -32,7 +38,10 @@ StartSearch::StartSearch(const Database& database, const LabelledScan& scan, con
       checker_(database, scan),
       queue_(matches_, regions_.regions, database_, rater_, relations_, options.least_rating),
       of_model_(database.models().size()) {
-  for (const RegionMatches& matches : matches_) counts_.matches += static_cast<long>(matches.size());
+  for (const RegionMatches& matches : matches_) singles_.insert(singles_.end(), matches.begin(), matches.end());
+  counts_.matches += static_cast<long>(singles_.size());
+  singles_ = best_rated(std::move(singles_));
+  singles_.resize(std::min(singles_.size(), static_cast<std::size_t>(options_.most_singles)));
 }
 
 bool StartSearch::look_further(int hypotheses) {
@@ -43,13 +52,11 @@ bool StartSearch::look_further(int hypotheses) {
     if (!pair) break;
     try_pair(*pair);
   }
-  for (; single_region_ < matches_.size(); ++single_region_, single_match_ = 0) {
-    const RegionMatches& matches = matches_[single_region_];
-    if (!is_free(static_cast<int>(single_region_))) continue;
-    for (; single_match_ < matches.size(); ++single_match_, ++looked_at) {
-      if (looked_at >= hypotheses) return true;
-      try_single(matches[single_match_]);
-    }
+  for (; next_single_ < singles_.size(); ++next_single_) {
+    const RatedMatch& match = singles_[next_single_];
+    if (!is_free(match.region)) continue;
+    if (looked_at++ >= hypotheses) return true;
+    try_single(match);
   }
   return false;
 }
@@ -59,9 +66,7 @@ void StartSearch::look_for_rivals(int region, int second) {
   if (second >= 0) {
     for (const MatchPair& pair : queue_.pairs_of(region, second, options_.most_rivals)) try_pair(pair);
   }
-  RegionMatches singles = matches_[static_cast<std::size_t>(region)];
-  std::stable_sort(singles.begin(), singles.end(),
-                   [](const RatedMatch& a, const RatedMatch& b) { return a.rating > b.rating; });
+  const RegionMatches singles = best_rated(matches_[static_cast<std::size_t>(region)]);
   const auto most = static_cast<std::size_t>(options_.most_rivals);
   for (std::size_t i = 0; i < std::min(most, singles.size()); ++i) try_single(singles[i]);
 }

@@ -29,6 +29,7 @@ struct StartPose {
 struct StartSearchOptions {
   int most_pairs = 2000;       // hypotheses of two or three regions looked at. Limit: >= 0.
   double least_rating = 4.0;   // of these
+  int most_singles = 1000;     // single matches looked at. Limit: >= 0.
   int most_rivals = 200;       // pairs, and as many single matches, looked at for the same regions. Limit: >= 0.
   int most_thirds = 2;         // third regions tried for a pair
   double same_distance = 4.0;  // starts this near, and
@@ -89,9 +90,9 @@ class StartSearch {
   RegionRelations relations_;
   PoseChecker checker_;
   HypothesisQueue queue_;
-  int pairs_ = 0;                         // looked at
-  std::size_t single_region_ = 0;         // the next single match: region, and
-  std::size_t single_match_ = 0;          // place among its matches
+  int pairs_ = 0;                    // looked at
+  std::vector<RatedMatch> singles_;  // the best rated first
+  std::size_t next_single_ = 0;
   std::set<std::pair<int, int>> rivals_;  // regions for which they were looked for
   std::vector<StartPose> starts_;
   std::vector<std::vector<std::size_t>> of_model_;  // starts

@@ -32,6 +32,7 @@ struct AcceptedPose {
 
 constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
 constexpr int kMostDoublings = 12;             // of a stretch of hypotheses
+constexpr double kRivalQuality = 0.5;          // of the start of the pose found, for a rival's to be worth settling
 constexpr double kRivalView = 0.9;             // of the cells a rival's start must show alike to be worth refining
 
 class TwoWaySearch {
@@ -109,11 +110,11 @@ class TwoWaySearch {
   }
 
   // Counts tries of the same regions with one model.
-  bool tried_enough(const StartPose& start) {
+  int& tries_of(const StartPose& start) {
     std::vector<int> key = start.regions;
     std::sort(key.begin(), key.end());
     key.push_back(start.model);
-    return ++tries_[key] > two_way_.most_tries;
+    return tries_[key];
   }
 
   // Whether training saw anything come of starts like this. Read anew: regions may have been taken since it was found.
@@ -159,7 +160,9 @@ class TwoWaySearch {
   }
 
   void try_start(std::size_t i) {
-    if (!worth_refining(i) || tried_enough(start_pose(i))) return;
+    int& tries = tries_of(start_pose(i));
+    if (tries >= two_way_.most_tries || !worth_refining(i)) return;
+    ++tries;
     Candidate candidate = refined(i, start_pose(i).T_sensor_model);
     if (candidate.probability < two_way_.accepted) return;
     prefer_near_symmetric(candidate);
@@ -188,8 +191,9 @@ class TwoWaySearch {
   void prefer_rival(Candidate& candidate) {
     look_for_rivals(candidate);
     int looked_at = 0;
+    const double least = kRivalQuality * start_pose(candidate.start).quality;
     for (const std::size_t i : rivals(candidate)) {
-      if (looked_at++ == two_way_.most_rivals) return;
+      if (looked_at++ == two_way_.most_rivals || start_pose(i).quality < least) return;
       if (i < tried_.size() && tried_[i]) continue;
       const Pose settled = settle(scan_, start_pose(i).model, start_pose(i).T_sensor_model, settling_);
       if (already_known({candidate}, i, settled)) continue;

@@ -42,9 +42,7 @@ struct Scene {
 
   Localization settled(const Pose& start) { return localize_and_settle(context, labelled, 0, start, {}, settling).localization; }
   [[nodiscard]] Localization plain(const Pose& start) const {
-    LocalizationOptions options = localization_options({});
-    options.reach = 12.0;  // as settled localization has them
-    options.most_rounds = 12;
+    const LocalizationOptions options = near_localization_options({});
     return localize(box(), context.sphere, start, *context.data, options);
   }
   // How much the scan agrees, less how much it disagrees.
