@@ -6,33 +6,10 @@
 #include <map>
 
 #include "common/growth_state.h"
+#include "common/plane_contacts.h"
 
 namespace foresight {
 namespace {
-
-// Connected cells of different planes: one and the next to its right or below it.
-struct Contact {
-  int cell, next;
-};
-
-std::vector<Contact> contacts_of(const Growth& growth) {
-  std::vector<Contact> contacts;
-  const std::vector<int>& labels = growth.found.labels;
-  const auto columns = static_cast<std::size_t>(growth.image.columns);
-  const auto differs = [&](int cell, int next) {
-    const int other = next < 0 ? 0 : labels[static_cast<std::size_t>(next)];
-    if (other != 0 && other != labels[static_cast<std::size_t>(cell)]) contacts.push_back({cell, next});
-  };
-  for (std::size_t at = 0; at < labels.size(); ++at) {
-    if (labels[at] == 0) continue;
-    const int cell = static_cast<int>(at);
-    // Most cells lie amid their own kind, which needs no look at the connectivity.
-    if (at + 1 < labels.size() && labels[at + 1] != labels[at]) differs(cell, growth.connectivity.right(cell));
-    if (at + columns < labels.size() && labels[at + columns] != labels[at])
-      differs(cell, growth.connectivity.down(cell));
-  }
-  return contacts;
-}
 
 // How two touching planes meet.
 struct Meeting {
@@ -141,7 +118,7 @@ std::vector<int> doubtful_cells(Growth& growth) {
     doubtful[static_cast<std::size_t>(cell)] = 1;
     doubts.push_back({cell, other});
   };
-  for (const auto& [cell, next] : contacts_of(growth)) {
+  for (const auto& [cell, next] : contacts_of(growth.connectivity, growth.found.labels)) {
     doubt(cell, growth.label(next));
     doubt(next, growth.label(cell));
   }
@@ -193,7 +170,7 @@ void settle_borders(const RangeImage& image, const CellConnectivity& connectivit
   Growth growth{image, connectivity, options, found};
   growth.measure_reach();
   share_out_doubtful_cells(growth);
-  const std::vector<Contact> contacts = contacts_of(growth);
+  const std::vector<Contact> contacts = contacts_of(growth.connectivity, growth.found.labels);
   const Meetings meetings = find_meetings(growth, contacts);
   // A border moves by as many cells as the patches that straddled it are wide, not farther: planes also cross where
   // there is no crease, as that of a block's side does on the floor beside the block.

@@ -14,6 +14,8 @@ class CellConnectivity {
  public:
   CellConnectivity(const RangeImage& image, const SegmentationOptions& options);
 
+  [[nodiscard]] int columns() const { return columns_; }
+
   // The connected cell to the right of, below, to the left of or above a cell, or -1.
   [[nodiscard]] int right(int cell) const { return step(cell, 0, 1); }
   [[nodiscard]] int down(int cell) const { return step(cell, 2, columns_); }
