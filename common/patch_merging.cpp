@@ -60,6 +60,15 @@ double relative_noise(const Plane& plane) {
   return std::max(kSideways, std::abs(plane.normal.z()));
 }
 
+std::vector<ReachTest> reach_tests(const Coordinates& points, const SegmentationOptions& options,
+                                   const std::vector<Plane>& planes) {
+  std::vector<ReachTest> tests;
+  tests.reserve(planes.size());
+  for (const Plane& plane : planes)
+    tests.emplace_back(points, plane, options.grow_tolerance * options.plane_sigma * relative_noise(plane));
+  return tests;
+}
+
 double fit_error(const PointSums& sums, const Plane& plane) {
   const double noise = relative_noise(plane);
   return sums.mean_squared_distance(plane) / (noise * noise);

@@ -13,13 +13,17 @@ std::vector<Contact> contacts_of(const CellConnectivity& connectivity, const std
   for (int first = 0; first < cells; first += columns) {
     const int last = first + columns - 1;
     const int below = last + 1 < cells ? columns : 0;
-    for (int cell = first; cell <= last; ++cell) {
-      const int* label = labels.data() + cell;
-      if (*label == 0) continue;
-      // Most cells lie amid their own kind, which needs no look at the connectivity.
-      if (cell < last && label[1] != *label) differs(cell, connectivity.right(cell));
-      if (label[below] != *label) differs(cell, connectivity.down(cell));
-    }
+    const int* const row = labels.data();
+    const auto lie_amid = [&](int block) {
+      const int* own = row + block;
+      return block + kBlock <= last && own[kBlock] == *own && all_are(*own, own) && all_are(*own, own + below);
+    };
+    visit_cells(first, last + 1, lie_amid, [&](int cell) {
+      const int* own = row + cell;
+      if (*own == 0) return;
+      if (cell < last && own[1] != *own) differs(cell, connectivity.right(cell));
+      if (own[below] != *own) differs(cell, connectivity.down(cell));
+    });
   }
   return contacts;
 }

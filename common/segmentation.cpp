@@ -16,34 +16,43 @@ namespace foresight {
 namespace {
 
 // From seeds to planes grown to their borders.
-void finish_round(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                  PlaneLabels& found) {
+void finish_round(const RangeImage& image, const Coordinates& points, const CellConnectivity& connectivity,
+                  const SegmentationOptions& options, PlaneLabels& found) {
   grow_planes(image, connectivity, options, found);
   settle_borders(image, connectivity, options, found);
-  refit_planes(image, options, found);
+  refit_planes(points, options, found);
   split_planes(image, connectivity, options, found);
   merge_touching_planes(connectivity, options, found);
   settle_borders(image, connectivity, options, found);
-  refit_planes(image, options, found);
+  refit_planes(points, options, found);
   grow_planes(image, connectivity, options, found);
 }
 
 // Regions of the planes' cells, without those that the last fit has put out of reach.
-std::vector<Region> regions_of(const RangeImage& image, const SegmentationOptions& options, const PlaneLabels& found) {
+std::vector<Region> regions_of(const Coordinates& points, const SegmentationOptions& options,
+                               const PlaneLabels& found) {
   std::vector<Region> regions(found.planes.size());
-  std::vector<double> reach(regions.size());
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const Plane& plane = found.planes[i];
     regions[i] = {{}, plane.normal, plane.offset, std::sqrt(found.sums[i].mean_squared_distance(plane))};
     regions[i].cells.reserve(static_cast<std::size_t>(found.sums[i].count()));
-    reach[i] = options.grow_tolerance * options.plane_sigma * relative_noise(plane);
   }
-  for (int cell = 0; cell < image.size(); ++cell) {
-    const int label = found.labels[static_cast<std::size_t>(cell)];
-    if (label == 0) continue;
+  const std::vector<ReachTest> within_reach = reach_tests(points, options, found.planes);
+  const int* labels = found.labels.data();
+  const auto take_block = [&](int first) {
+    const int label = labels[first];
+    if (!all_are(label, labels + first)) return false;
+    if (label == 0) return true;
     const auto i = static_cast<std::size_t>(label - 1);
-    if (std::abs(found.planes[i].distance(image[cell].cast<double>())) <= reach[i]) regions[i].cells.push_back(cell);
-  }
+    if (!within_reach[i].holds_for_block(first)) return false;
+    for (int cell = first; cell < first + kBlock; ++cell) regions[i].cells.push_back(cell);
+    return true;
+  };
+  visit_cells(0, points.size(), take_block, [&](int cell) {
+    if (labels[cell] == 0) return;
+    const auto i = static_cast<std::size_t>(labels[cell] - 1);
+    if (within_reach[i].holds(cell)) regions[i].cells.push_back(cell);
+  });
   return regions;
 }
 
@@ -85,17 +94,18 @@ SegmentationOptions segmentation_options_for(const SensorModel& sensor) {
 }
 
 std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& options) {
-  const CellConnectivity connectivity(image, options);
+  const Coordinates points(image);
+  const CellConnectivity connectivity(points, options);
   PlaneLabels found(image.size());
   seed_on_grid(image, connectivity, options, found);
-  finish_round(image, connectivity, options, found);
+  finish_round(image, points, connectivity, options, found);
   seed_between(image, connectivity, options, (options.seed_block + 1) / 2,
                found);  // thin and small faces between the large ones
-  finish_round(image, connectivity, options, found);
+  finish_round(image, points, connectivity, options, found);
 
   split_planes(image, connectivity, options, found);
 
-  std::vector<Region> regions = regions_of(image, options, found);
+  std::vector<Region> regions = regions_of(points, options, found);
   std::sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) {
     return a.cells.size() != b.cells.size() ? a.cells.size() > b.cells.size() : a.cells.front() < b.cells.front();
   });
