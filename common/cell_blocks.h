@@ -5,15 +5,13 @@
 
 namespace foresight {
 
-// Loops over a fixed number of cells without a way out early are what compilers turn into vector instructions.
 inline constexpr int kBlock = 16;  // Unit: cells.
 
 // Whether a block of cells is all of one label.
-[[nodiscard]] inline bool all_are(int label, const int* labels) {
-  int different = 0;
-  for (int i = 0; i < kBlock; ++i) different |= labels[i] ^ label;
-  return different == 0;
-}
+[[nodiscard]] bool all_are(int label, const int* labels);
+
+// Whether any cell of a block is of no label.
+[[nodiscard]] bool any_is_free(const int* labels);
 
 // Calls visit(cell) for cells from `begin` to before `end`, in order, without whole blocks for whose first cell
 // skip(cell) is true.

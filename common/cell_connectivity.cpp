@@ -87,20 +87,27 @@ CellConnectivity::CellConnectivity(const Coordinates& points, const Segmentation
     judge.find_small_steps(first, columns_, columns_, steps.data());
     link_small_steps(first, columns_, columns_, kDown, steps.data());
   }
-  constexpr int kBoth = 1 << kRight | 1 << kDown;
-  const auto is_done = [&](int block) {
-    int open = 0;
-    for (int i = 0; i < kBlock; ++i) open |= ~gaps_[static_cast<std::size_t>(block + i)] & kBoth;
-    return open == 0 || !points.any_valid(block);
-  };
+  const auto is_done = [&](int block) { return all_linked(block) || !points.any_valid(block); };
   visit_cells(0, points.size(), is_done, [&](int cell) {
     const int gaps = gaps_[static_cast<std::size_t>(cell)];
-    if ((gaps & kBoth) == kBoth || !points.valid(cell)) return;
+    if ((gaps & kForwards) == kForwards || !points.valid(cell)) return;
     const int row = cell / columns_;
     const int column = cell % columns_;
     if (right(cell) < 0) link(cell, judge.gap_to_next(cell, 1, columns_ - 1 - column, column), kRight, 1);
     if (down(cell) < 0) link(cell, judge.gap_to_next(cell, columns_, points.rows - 1 - row, row), kDown, columns_);
   });
+}
+
+bool CellConnectivity::any_connected(int first) const {
+  int any = 0;
+  for (int i = 0; i < kBlock; ++i) any |= gaps_[static_cast<std::size_t>(first + i)];
+  return any != 0;
+}
+
+bool CellConnectivity::all_linked(int first) const {
+  int missing = 0;
+  for (int i = 0; i < kBlock; ++i) missing |= ~gaps_[static_cast<std::size_t>(first + i)] & kForwards;
+  return missing == 0;
 }
 
 void CellConnectivity::link_small_steps(int first, int count, int stride, int shift, const unsigned char* is_small) {

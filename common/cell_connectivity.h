@@ -25,11 +25,7 @@ class CellConnectivity {
   [[nodiscard]] int up(int cell) const { return step(cell, kDown + kBackwards, -columns_); }
 
   // Whether any cell of a block is connected with another.
-  [[nodiscard]] bool any_connected(int first) const {
-    int any = 0;
-    for (int i = 0; i < kBlock; ++i) any |= gaps_[static_cast<std::size_t>(first + i)];
-    return any != 0;
-  }
+  [[nodiscard]] bool any_connected(int first) const;
   // Calls visit(neighbour) for each of the up to four connected neighbours.
   template <typename Visit>
   void for_each_neighbour(int cell, Visit&& visit) const {
@@ -42,11 +38,13 @@ class CellConnectivity {
  private:
   // Where a cell's byte holds its two bits for the way to the right and down, and how much higher for the way back.
   static constexpr int kRight = 0, kDown = 2, kBackwards = 4;
+  static constexpr int kForwards = 1 << kRight | 1 << kDown;  // connected to the very next cell both ways
 
   [[nodiscard]] int step(int cell, int shift, int stride) const {
     const int gap = (gaps_[static_cast<std::size_t>(cell)] >> shift) & 3;
     return gap == 0 ? -1 : cell + gap * stride;
   }
+  [[nodiscard]] bool all_linked(int first) const;
   void link_small_steps(int first, int count, int stride, int shift, const unsigned char* is_small);
   void link(int cell, int gap, int shift, int stride);
 

@@ -29,6 +29,12 @@ Coordinates::Coordinates(const RangeImage& image)
   largest = *std::max_element(block.begin(), block.end());
 }
 
+bool Coordinates::any_valid(int first) const {
+  int any = 0;
+  for (int i = 0; i < kBlock; ++i) any |= valid(first + i) ? 1 : 0;
+  return any != 0;
+}
+
 ReachTest::ReachTest(const Coordinates& points, const Plane& plane, double reach)
     : points_(points),
       plane_(plane),

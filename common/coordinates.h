@@ -22,11 +22,7 @@ struct Coordinates {
   [[nodiscard]] int size() const { return rows * columns; }
   [[nodiscard]] bool valid(int cell) const { return !std::isnan(z[static_cast<std::size_t>(cell)]); }
   // Whether any cell of a block is.
-  [[nodiscard]] bool any_valid(int first) const {
-    int any = 0;
-    for (int i = 0; i < kBlock; ++i) any |= valid(first + i) ? 1 : 0;
-    return any != 0;
-  }
+  [[nodiscard]] bool any_valid(int first) const;
   [[nodiscard]] Eigen::Vector3d operator[](int cell) const {
     const auto at = static_cast<std::size_t>(cell);
     return {x[at], y[at], z[at]};

@@ -16,7 +16,7 @@ std::vector<Contact> contacts_of(const CellConnectivity& connectivity, const std
     const int* const row = labels.data();
     const auto lie_amid = [&](int block) {
       const int* own = row + block;
-      return block + kBlock <= last && own[kBlock] == *own && all_are(*own, own) && all_are(*own, own + below);
+      return (block + kBlock > last || own[kBlock] == *own) && all_are(*own, own) && all_are(*own, own + below);
     };
     visit_cells(first, last + 1, lie_amid, [&](int cell) {
       const int* own = row + cell;

@@ -84,9 +84,7 @@ void grow_planes(const RangeImage& image, const CellConnectivity& connectivity, 
   };
   const int* labels = found.labels.data();
   const auto none_is_free = [&](int block) {
-    int free = 0;
-    for (int i = 0; i < kBlock; ++i) free |= labels[block + i] == 0 ? 1 : 0;
-    return free == 0 || !connectivity.any_connected(block);
+    return !any_is_free(labels + block) || !connectivity.any_connected(block);
   };
   visit_cells(0, image.size(), none_is_free, [&](int cell) {
     if (labels[cell] != 0) return;

@@ -1,0 +1,20 @@
+#include "common/cell_blocks.h"
+
+namespace foresight {
+
+// Loops over a fixed number of cells without a way out early, not mixed with other code: those are what compilers turn
+// into vector instructions.
+
+bool all_are(int label, const int* labels) {
+  int different = 0;
+  for (int i = 0; i < kBlock; ++i) different |= labels[i] ^ label;
+  return different == 0;
+}
+
+bool any_is_free(const int* labels) {
+  int free = 0;
+  for (int i = 0; i < kBlock; ++i) free |= labels[i] == 0 ? 1 : 0;
+  return free != 0;
+}
+
+}  // namespace foresight
