@@ -35,34 +35,6 @@ struct CellRays {
   }
 };
 
-// A cell's patch of the region's plane.
-struct Footprint {
-  Eigen::Vector3d point;
-  double area;            // Unit: mm^2.
-  bool is_on_ray = true;  // whether the point lies where the cell's ray meets the plane
-};
-
-// Where the ray of a cell meets the plane: the data point without the noise along its ray. Rays that graze the plane
-// (beyond 84 degrees: only scraps of a few cells have such planes) meet it nowhere sensible; there the data point
-// itself is taken.
-Footprint footprint(const Region& region, const RangeImage& image, const CellRays& rays, int row, int column) {
-  constexpr double kSmallestCosine = 0.1;
-  const Eigen::Vector3d ray(rays.across[static_cast<std::size_t>(column)], rays.down[static_cast<std::size_t>(row)],
-                            1.0);
-  const double slope = -region.normal.dot(ray);
-  // The area element of a plane over the grid is depth^2 / (slope fx fy).
-  const auto area = [&](double depth, double at_slope) {
-    return depth * depth / (at_slope * rays.camera.fx * rays.camera.fy);
-  };
-  if (slope >= kSmallestCosine * rays.longest || slope >= kSmallestCosine * ray.norm()) {
-    const Eigen::Vector3d point = (-region.offset / slope) * ray;
-    return {point, area(point.z(), slope)};
-  }
-  Eigen::Vector3d point = image[image.cell(row, column)].cast<double>();
-  point -= (region.normal.dot(point) - region.offset) * region.normal;
-  return {point, area(point.z(), kSmallestCosine * ray.norm()), false};
-}
-
 // Andrew's monotone chain; counter-clockwise, no collinear points.
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -104,40 +76,116 @@ struct Patch {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();       // first moments
   Eigen::Vector3d products = Eigen::Vector3d::Zero();  // second moments: of xx, xy, yy
   std::vector<Eigen::Vector2d> outline;                // points with the convex hull of all
+
+  void add(const Eigen::Vector2d& p, double cell_area) {
+    const Eigen::Vector2d weighted = cell_area * p;
+    area += cell_area;
+    sum += weighted;
+    products += Eigen::Vector3d(weighted.x() * p.x(), weighted.y() * p.x(), weighted.y() * p.y());
+  }
 };
 
-// The rays of a row of cells lie in a plane and meet the region's in a line, so the first and the last are all that the
-// hull needs of them.
-Patch project(const Region& region, const RangeImage& image, const CellRays& rays, const PlaneAxes& axes) {
-  const Eigen::Vector3d origin = region.offset * region.normal;
-  Patch patch;
-  std::vector<Eigen::Vector2d> on_row;
-  const std::vector<int>& cells = region.cells;
-  for (std::size_t i = 0; i < cells.size();) {
-    const int row = cells[i] / image.columns;
-    const int first = row * image.columns;
-    bool on_line = true;
-    on_row.clear();
-    for (; i < cells.size() && cells[i] - first < image.columns; ++i) {
-      const Footprint foot = footprint(region, image, rays, row, cells[i] - first);
-      const Eigen::Vector3d from_origin = foot.point - origin;
-      const Eigen::Vector2d p(axes.u.dot(from_origin), axes.v.dot(from_origin));
-      const Eigen::Vector2d weighted = foot.area * p;
-      patch.area += foot.area;
-      patch.sum += weighted;
-      patch.products += Eigen::Vector3d(weighted.x() * p.x(), weighted.y() * p.x(), weighted.y() * p.y());
-      on_line = on_line && foot.is_on_ray;
-      on_row.push_back(p);
+// Puts the cells of a region on its plane: each where its ray meets the plane, which is the data point without the
+// noise along the ray.
+class Projector {
+ public:
+  Projector(const Region& region, const RangeImage& image, const CellRays& rays, const PlaneAxes& axes)
+      : region_(region), image_(image), rays_(rays), axes_(axes), origin_(region.offset * region.normal) {}
+
+  Patch project() {
+    Patch patch;
+    const std::vector<int>& cells = region_.cells;
+    for (std::size_t first = 0, end = 0; first < cells.size(); first = end) {
+      const int row = cells[first] / image_.columns;
+      const int next_row = (row + 1) * image_.columns;
+      while (end < cells.size() && cells[end] - cells[first] == static_cast<int>(end - first) && cells[end] < next_row)
+        ++end;
+      add_span(row, cells[first] - row * image_.columns, end - first, patch);
     }
-    if (on_line) on_row = {on_row.front(), on_row.back()};
-    patch.outline.insert(patch.outline.end(), on_row.begin(), on_row.end());
+    return patch;
   }
-  return patch;
-}
+
+ private:
+  // Rays that graze the plane (beyond 84 degrees: only scraps of a few cells have such planes) meet it nowhere
+  // sensible.
+  static constexpr double kSmallestCosine = 0.1;
+
+  [[nodiscard]] double slope(double across, double down) const {
+    return -region_.normal.dot(Eigen::Vector3d(across, down, 1.0));
+  }
+  // The area element of a plane over the grid is depth^2 / (slope fx fy).
+  [[nodiscard]] double area(double depth, double at_slope) const {
+    return depth * depth / (at_slope * rays_.camera.fx * rays_.camera.fy);
+  }
+
+  // Cells one after the other in a row.
+  void add_span(int row, int column, std::size_t count, Patch& patch) {
+    const double* across = rays_.across.data() + column;
+    const double down = rays_.down[static_cast<std::size_t>(row)];
+    const double least_slope = kSmallestCosine * rays_.longest;
+    // The slope goes up or down all the way.
+    if (slope(across[0], down) < least_slope || slope(across[count - 1], down) < least_slope) {
+      for (int i = 0; i < static_cast<int>(count); ++i) add_grazed(row, column + i, patch);
+      return;
+    }
+    span_.resize(3 * count);
+    place_span(across, down, count);
+    const auto point = [&](std::size_t i) { return Eigen::Vector2d(span_[i], span_[count + i]); };
+    for (std::size_t i = 0; i < count; ++i) patch.add(point(i), span_[2 * count + i]);
+    // The rays lie in a plane and meet the region's in a line: the first and the last are all that the hull needs.
+    patch.outline.push_back(point(0));
+    if (count > 1) patch.outline.push_back(point(count - 1));
+  }
+
+  // Fills span_. A loop for vector instructions.
+  void place_span(const double* across, double down, std::size_t count) {
+    const Eigen::Vector3d n = region_.normal, u = axes_.u, v = axes_.v, origin = origin_;
+    const double offset = region_.offset;
+    const double fx = rays_.camera.fx, fy = rays_.camera.fy;
+    double* along_u = span_.data();
+    double* along_v = along_u + count;
+    double* areas = along_v + count;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double at_slope = -(n.x() * across[i] + n.y() * down + n.z());
+      const double depth = -offset / at_slope;
+      const double x = depth * across[i] - origin.x();
+      const double y = depth * down - origin.y();
+      const double z = depth - origin.z();
+      along_u[i] = u.x() * x + u.y() * y + u.z() * z;
+      along_v[i] = v.x() * x + v.y() * y + v.z() * z;
+      areas[i] = depth * depth / (at_slope * fx * fy);
+    }
+  }
+
+  // Where the ray does not meet the plane, the data point itself is put on it.
+  void add_grazed(int row, int column, Patch& patch) const {
+    const Eigen::Vector3d ray(rays_.across[static_cast<std::size_t>(column)], rays_.down[static_cast<std::size_t>(row)],
+                              1.0);
+    const double least_slope = kSmallestCosine * ray.norm();
+    const double at_slope = slope(ray.x(), ray.y());
+    Eigen::Vector3d point = image_[image_.cell(row, column)].cast<double>();
+    if (at_slope >= least_slope) {
+      point = (-region_.offset / at_slope) * ray;
+    } else {
+      point -= (region_.normal.dot(point) - region_.offset) * region_.normal;
+    }
+    point -= origin_;
+    const Eigen::Vector2d p(axes_.u.dot(point), axes_.v.dot(point));
+    patch.add(p, area(origin_.z() + point.z(), std::max(at_slope, least_slope)));
+    patch.outline.push_back(p);
+  }
+
+  const Region& region_;
+  const RangeImage& image_;
+  const CellRays& rays_;
+  const PlaneAxes& axes_;
+  Eigen::Vector3d origin_;
+  std::vector<double> span_;  // by cell: along u, along v, areas
+};
 
 DescribedRegion describe(Region region, const RangeImage& image, const CellRays& rays) {
   const PlaneAxes axes = axes_of(region.normal);
-  Patch patch = project(region, image, rays, axes);
+  Patch patch = Projector(region, image, rays, axes).project();
   const Eigen::Vector2d mean = patch.sum / patch.area;
   const Eigen::Vector3d second = patch.products / patch.area;
   Eigen::Matrix2d covariance;
