@@ -87,7 +87,7 @@ CellConnectivity::CellConnectivity(const Coordinates& points, const Segmentation
     judge.find_small_steps(first, columns_, columns_, steps.data());
     link_small_steps(first, columns_, columns_, kDown, steps.data());
   }
-  const auto is_done = [&](int block) { return all_linked(block) || !points.any_valid(block); };
+  const auto is_done = [&](int block) { return all_have(kForwards, block) || !points.any_valid(block); };
   visit_cells(0, points.size(), is_done, [&](int cell) {
     const int gaps = gaps_[static_cast<std::size_t>(cell)];
     if ((gaps & kForwards) == kForwards || !points.valid(cell)) return;
@@ -104,9 +104,9 @@ bool CellConnectivity::any_connected(int first) const {
   return any != 0;
 }
 
-bool CellConnectivity::all_linked(int first) const {
+bool CellConnectivity::all_have(int gaps, int first) const {
   int missing = 0;
-  for (int i = 0; i < kBlock; ++i) missing |= ~gaps_[static_cast<std::size_t>(first + i)] & kForwards;
+  for (int i = 0; i < kBlock; ++i) missing |= ~gaps_[static_cast<std::size_t>(first + i)] & gaps;
   return missing == 0;
 }
 

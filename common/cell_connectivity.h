@@ -26,6 +26,9 @@ class CellConnectivity {
 
   // Whether any cell of a block is connected with another.
   [[nodiscard]] bool any_connected(int first) const;
+  // Whether all cells of a block are with the very cells to the left and above.
+  [[nodiscard]] bool all_linked_back(int first) const { return all_have(kForwards << kBackwards, first); }
+
   // Calls visit(neighbour) for each of the up to four connected neighbours.
   template <typename Visit>
   void for_each_neighbour(int cell, Visit&& visit) const {
@@ -44,7 +47,7 @@ class CellConnectivity {
     const int gap = (gaps_[static_cast<std::size_t>(cell)] >> shift) & 3;
     return gap == 0 ? -1 : cell + gap * stride;
   }
-  [[nodiscard]] bool all_linked(int first) const;
+  [[nodiscard]] bool all_have(int gaps, int first) const;
   void link_small_steps(int first, int count, int stride, int shift, const unsigned char* is_small);
   void link(int cell, int gap, int shift, int stride);
 

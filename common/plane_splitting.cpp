@@ -18,10 +18,14 @@ class RunForest {
  public:
   RunForest(const CellConnectivity& connectivity, const std::vector<int>& labels)
       : connectivity_(connectivity),
-        labels_(labels),
-        run_of_(std::make_unique_for_overwrite<int[]>(labels.size())),
-        end_of_image_(static_cast<int>(labels.size())) {
-    for (int cell = 0; cell < end_of_image_;) cell = label(cell) == 0 ? cell + 1 : add_run(cell);
+        labels_(labels.data()),
+        columns_(connectivity.columns()),
+        run_of_(std::make_unique_for_overwrite<int[]>(labels.size())) {
+    const int cells = static_cast<int>(labels.size());
+    for (int first = 0; first < cells; first += columns_) {
+      visit_cells(
+          first, first + columns_, [&](int block) { return add_block(block); }, [&](int cell) { add(cell); });
+    }
   }
 
   // Numbers the pieces in the order of their first cells. Returns their sizes.
@@ -42,44 +46,60 @@ class RunForest {
   [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
 
  private:
-  [[nodiscard]] int label(int cell) const { return labels_[static_cast<std::size_t>(cell)]; }
-
-  // Returns the cell after it.
-  int add_run(int first) {
-    const int own = static_cast<int>(runs_.size());
-    const int own_label = label(first);
-    runs_.push_back({first, first, own_label, own});
-    // The cell before is of another run, but one without data may lie between two of one piece.
-    if (const int left = connectivity_.left(first); left >= 0 && label(left) == own_label) join(run_of(left), own);
-    int joined = -1;
-    int cell = first;
-    do {
-      run_of(cell) = own;
-      const int up = connectivity_.up(cell);
-      if (up >= 0 && label(up) == own_label && run_of(up) != joined) join(joined = run_of(up), own);
-      ++cell;
-    } while (cell < end_of_image_ && label(cell) == own_label && connectivity_.left(cell) == cell - 1);
-    runs_.back().end = cell;
-    return cell;
+  // Adds the cells of a block where there are none to add, or where they go on with the last run and lie below one run.
+  bool add_block(int first) {
+    const int* own = labels_ + first;
+    if (!all_are(*own, own)) return false;
+    if (*own == 0) return true;
+    if (!goes_on(first) || first < columns_ || !connectivity_.all_linked_back(first)) return false;
+    const int above = first - columns_;
+    if (!all_are(*own, labels_ + above) || run_of(above) != run_of(above + kBlock - 1)) return false;
+    std::fill_n(&run_of(first), kBlock, static_cast<int>(runs_.size()) - 1);
+    runs_.back().end += kBlock;
+    join(run_of(above));
+    return true;
   }
 
+  void add(int cell) {
+    const int label = labels_[cell];
+    if (label == 0) return;
+    if (!goes_on(cell) || connectivity_.left(cell) != cell - 1) {
+      const int own = static_cast<int>(runs_.size());
+      runs_.push_back({cell, cell, label, own});
+      joined_ = own;
+      // The cell before is of another run, but one without data may lie between two of one piece.
+      if (const int left = connectivity_.left(cell); left >= 0 && labels_[left] == label) join(run_of(left));
+    }
+    run_of(cell) = static_cast<int>(runs_.size()) - 1;
+    ++runs_.back().end;
+    if (const int up = connectivity_.up(cell); up >= 0 && labels_[up] == label) join(run_of(up));
+  }
+
+  // Whether a cell follows the last run and has its label.
+  [[nodiscard]] bool goes_on(int cell) const {
+    return !runs_.empty() && runs_.back().end == cell && runs_.back().label == labels_[cell];
+  }
   [[nodiscard]] int& run_of(int cell) { return run_of_[static_cast<std::size_t>(cell)]; }
   [[nodiscard]] int& parent(int run) { return runs_[static_cast<std::size_t>(run)].piece; }
   int root_of(int run) {
     while (parent(run) != run) run = parent(run) = parent(parent(run));
     return run;
   }
-  void join(int before, int own) {
+  // The last run is of one piece with one before.
+  void join(int before) {
+    if (before == joined_) return;
+    joined_ = before;
     const int a = root_of(before);
-    const int b = root_of(own);
+    const int b = root_of(static_cast<int>(runs_.size()) - 1);
     parent(std::max(a, b)) = std::min(a, b);
   }
 
   const CellConnectivity& connectivity_;
-  const std::vector<int>& labels_;
+  const int* labels_;
+  int columns_;
   std::unique_ptr<int[]> run_of_;  // by cell; set where the cell is of a plane
-  int end_of_image_;
   std::vector<Run> runs_;
+  int joined_ = -1;  // the run that the last one was joined with last, or itself
 };
 
 // By piece. The first piece of a plane, mostly all of it, has the sums of the plane less those of the other pieces.

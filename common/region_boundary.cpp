@@ -1,6 +1,8 @@
 #include "common/region_boundary.h"
 
-#include <cmath>
+#include <numeric>
+
+#include "common/cell_blocks.h"
 
 namespace foresight {
 namespace {
@@ -42,13 +44,23 @@ class BoundaryReader {
     const int first = image_.cell(row, 0);
     const int end = first + image_.columns;
     int before = -1;
-    for (int cell = first; cell < end; ++cell) {
-      if (label(cell) == 0) continue;
+    const auto pass_block = [&](int block) {
+      const int* own = labels_.data() + block;
+      if (!all_are(*own, own)) return false;
+      if (*own == 0) return true;
+      if (row == 0 || before + 1 != block || own[-1] != *own || !all_are(*own, own - image_.columns)) return false;
+      std::iota(&above[static_cast<std::size_t>(block - first)],
+                &above[static_cast<std::size_t>(block - first)] + kBlock, block);
+      before = block + kBlock - 1;
+      return true;
+    };
+    visit_cells(first, end, pass_block, [&](int cell) {
+      if (label(cell) == 0) return;
       int& over = above[static_cast<std::size_t>(cell - first)];
       meet(before, cell, before >= 0 ? before + 1 < cell : cell > first);
       meet(over, cell, over >= 0 ? over + image_.columns < cell : row > 0);
       before = over = cell;
-    }
+    });
     if (before >= 0) look(before, -1, before + 1 < end);
   }
 
