@@ -16,7 +16,8 @@ PointSums sums_of_square(const RangeImage& image, int first_cell, int side) {
       if (image.valid(cell)) sums.add(image[cell].cast<double>());
     }
   }
-  return sums;
+  const PointSums result = sums;  // the sums themselves stay in registers
+  return result;
 }
 
 // Squares of the image on a grid, of one size.
