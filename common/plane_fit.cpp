@@ -12,13 +12,13 @@ struct Scatter {
 
   explicit Scatter(const PointSums& sums) {
     const double share = 1.0 / sums.count_;
-    const double x = sums.x_ * share, y = sums.y_ * share, z = sums.z_ * share;
-    xx = sums.xx_ * share - x * x;
-    yy = sums.yy_ * share - y * y;
-    zz = sums.zz_ * share - z * z;
-    xy = sums.xy_ * share - x * y;
-    xz = sums.xz_ * share - x * z;
-    yz = sums.yz_ * share - y * z;
+    const double x = sums.xy_[0] * share, y = sums.xy_[1] * share, z = sums.z_ * share;
+    xx = sums.xx_yy_[0] * share - x * x;
+    yy = sums.xx_yy_[1] * share - y * y;
+    zz = sums.zz_xy_[0] * share - z * z;
+    xy = sums.zz_xy_[1] * share - x * y;
+    xz = sums.xz_yz_[0] * share - x * z;
+    yz = sums.xz_yz_[1] * share - y * z;
   }
 
   // Coefficients of the characteristic polynomial.
