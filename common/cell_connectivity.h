@@ -32,10 +32,11 @@ class CellConnectivity {
   // Calls visit(neighbour) for each of the up to four connected neighbours.
   template <typename Visit>
   void for_each_neighbour(int cell, Visit&& visit) const {
-    if (const int next = right(cell); next >= 0) visit(next);
-    if (const int next = down(cell); next >= 0) visit(next);
-    if (const int next = left(cell); next >= 0) visit(next);
-    if (const int next = up(cell); next >= 0) visit(next);
+    const int gaps = gaps_[static_cast<std::size_t>(cell)];  // read once, whatever visit() writes
+    if (const int gap = gaps >> kRight & 3; gap > 0) visit(cell + gap);
+    if (const int gap = gaps >> kDown & 3; gap > 0) visit(cell + gap * columns_);
+    if (const int gap = gaps >> (kRight + kBackwards) & 3; gap > 0) visit(cell - gap);
+    if (const int gap = gaps >> (kDown + kBackwards) & 3; gap > 0) visit(cell - gap * columns_);
   }
 
  private:

@@ -15,25 +15,34 @@ class GrowthQueue {
   struct Candidate {
     int cell, label;
   };
+  GrowthQueue() { latest_.fill(-1); }
+
   // share: distance as a share of the reach, 0 to 1.
   void push(double share, Candidate candidate) {
     const auto bucket = static_cast<std::size_t>(share * (kBuckets - 1));
-    buckets_[bucket].push_back(candidate);
+    entries_.push_back({candidate, latest_[bucket]});
+    latest_[bucket] = static_cast<int>(entries_.size()) - 1;
     first_ = std::min(first_, bucket);
   }
   // The nearest candidate, the latest of several; false when there is none.
   bool pop(Candidate& nearest) {
-    while (first_ < kBuckets && buckets_[first_].empty()) ++first_;
+    while (first_ < kBuckets && latest_[first_] < 0) ++first_;
     if (first_ == kBuckets) return false;
-    nearest = buckets_[first_].back();
-    buckets_[first_].pop_back();
+    const Entry& entry = entries_[static_cast<std::size_t>(latest_[first_])];
+    nearest = entry.candidate;
+    latest_[first_] = entry.before;
     return true;
   }
 
  private:
+  struct Entry {
+    Candidate candidate;
+    int before;  // the one pushed before it with the same distance, or -1
+  };
   static constexpr std::size_t kBuckets = 64;
   std::size_t first_ = kBuckets;
-  std::array<std::vector<Candidate>, kBuckets> buckets_;
+  std::array<int, kBuckets> latest_;  // by bucket: index of the entry pushed last, or -1
+  std::vector<Entry> entries_;
 };
 
 // Sums without the cells beside other planes or none. By plane.
