@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <utility>
 
 #include "common/growth_state.h"
 #include "common/plane_contacts.h"
@@ -27,7 +27,46 @@ struct Meeting {
     return a > least && b > least ? 1 : 0;
   }
 };
-using Meetings = std::map<std::pair<int, int>, Meeting>;  // by labels, the lower first
+
+// Of all planes that touch.
+class Meetings {
+ public:
+  explicit Meetings(std::size_t planes) : first_(planes + 1, -1) {}
+
+  // Of two planes by their labels, the lower first.
+  Meeting& of(std::pair<int, int> labels) {
+    int& first = first_[static_cast<std::size_t>(labels.first)];
+    for (int i = first; i >= 0; i = entry(i).next) {
+      if (entry(i).second == labels.second) return entry(i).meeting;
+    }
+    entries_.push_back({labels.second, first, {}, 0});
+    first = static_cast<int>(entries_.size()) - 1;
+    return entries_.back().meeting;
+  }
+  void find_creases(double least) {
+    for (Entry& each : entries_) each.crease = each.meeting.crease(least);
+  }
+  // Meeting::crease(), or 0 where the planes did not touch.
+  [[nodiscard]] int crease(std::pair<int, int> labels) const {
+    for (int i = first_[static_cast<std::size_t>(labels.first)]; i >= 0;) {
+      const Entry& each = entries_[static_cast<std::size_t>(i)];
+      if (each.second == labels.second) return each.crease;
+      i = each.next;
+    }
+    return 0;
+  }
+
+ private:
+  struct Entry {
+    int second, next;  // the higher label; the next entry of the same lower one, or -1
+    Meeting meeting;
+    int crease;
+  };
+  [[nodiscard]] Entry& entry(int i) { return entries_[static_cast<std::size_t>(i)]; }
+
+  std::vector<int> first_;  // by the lower label: an entry, or -1
+  std::vector<Entry> entries_;
+};
 
 // The cell `steps` links away from a border, or -1 when that is another plane's. next: the way to go.
 template <typename Next>
@@ -41,13 +80,13 @@ int some_way_inside(Growth& growth, int cell, int steps, Next&& next) {
 }
 
 Meetings find_meetings(Growth& growth, const std::vector<Contact>& contacts) {
-  Meetings meetings;
+  Meetings meetings(growth.found.planes.size());
   const CellConnectivity& links = growth.connectivity;
   const int steps = growth.options.seed_block;
   const auto meet = [&](int before, int after, auto&& backwards, auto&& forwards) {
     const int a = growth.label(before);
     const int b = growth.label(after);
-    Meeting& meeting = meetings[std::minmax(a, b)];
+    Meeting& meeting = meetings.of(std::minmax(a, b));
     const int in_a = some_way_inside(growth, before, steps, backwards);
     const int in_b = some_way_inside(growth, after, steps, forwards);
     if (in_a >= 0) {
@@ -70,6 +109,7 @@ Meetings find_meetings(Growth& growth, const std::vector<Contact>& contacts) {
       meet(cell, next, up, down);
     }
   }
+  meetings.find_creases(growth.options.plane_sigma);
   return meetings;
 }
 
@@ -188,8 +228,7 @@ void settle_borders(const RangeImage& image, const CellConnectivity& connectivit
     connectivity.for_each_neighbour(cell, [&](int next) {
       const int other = growth.label(next);
       if (other == 0 || other == own || other == best) return;
-      const auto meeting = meetings.find(std::minmax(own, other));
-      const int crease = meeting == meetings.end() ? 0 : meeting->second.crease(options.plane_sigma);
+      const int crease = meetings.crease(std::minmax(own, other));
       if (!belongs_to(growth, cell, next, own, other, crease)) return;
       if (best == own || growth.distance(cell, other) < growth.distance(cell, best)) best = other;
     });

@@ -33,13 +33,14 @@ struct Scatter {
   [[nodiscard]] double smallest() const {
     constexpr int kMostSteps = 40;
     const double c0 = determinant(), c1 = minors(), c2 = trace();
+    const double enough = 1e-8 * c1;  // next to the middle eigenvalue: the error left is the square of it
     double value = 0.0;
     for (int i = 0; i < kMostSteps; ++i) {
       const double slope = c1 - value * (2.0 * c2 - 3.0 * value);
       if (!(slope > 0.0)) break;  // two or three are the same
       const double step = (c0 - value * (c1 - value * (c2 - value))) / slope;
       value += step;
-      if (std::abs(step) <= 1e-14 * c2) break;
+      if (std::abs(step) * c2 <= enough) break;
     }
     return value;
   }
