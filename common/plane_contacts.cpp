@@ -10,21 +10,15 @@ std::vector<Contact> contacts_of(const CellConnectivity& connectivity, const std
   };
   const int columns = connectivity.columns();
   const int cells = static_cast<int>(labels.size());
-  for (int first = 0; first < cells; first += columns) {
-    const int last = first + columns - 1;
-    const int below = last + 1 < cells ? columns : 0;
-    const int* const row = labels.data();
-    const auto lie_amid = [&](int block) {
-      const int* own = row + block;
-      return (block + kBlock > last || own[kBlock] == *own) && all_are(*own, own) && all_are(*own, own + below);
-    };
-    visit_cells(first, last + 1, lie_amid, [&](int cell) {
-      const int* own = row + cell;
-      if (*own == 0) return;
-      if (cell < last && own[1] != *own) differs(cell, connectivity.right(cell));
-      if (own[below] != *own) differs(cell, connectivity.down(cell));
-    });
-  }
+  const auto visit = [&](int cell) {
+    if (labels[static_cast<std::size_t>(cell)] == 0) return;
+    differs(cell, connectivity.right(cell));
+    differs(cell, connectivity.down(cell));
+  };
+  const auto mark_above = [&](int first, Marks& marks) { return mark_contacts(labels.data() + first, columns, marks); };
+  const auto mark_last_row = [&](int first, Marks& marks) { return mark_contacts(labels.data() + first, 0, marks); };
+  visit_marked(0, cells - columns, mark_above, visit);
+  visit_marked(cells - columns, cells - 1, mark_last_row, visit);
   return contacts;
 }
 

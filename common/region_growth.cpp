@@ -51,19 +51,14 @@ std::vector<PointSums> sums_of_inner_cells(const Coordinates& points, const Plan
   const int* labels = found.labels.data();
   const int columns = points.columns;
   const int cells = points.size();
-  const auto lies_amid = [&](int block) {
-    const int* own = labels + block;
-    if (!all_are(*own, own)) return false;
-    return *own == 0 || (block >= columns && block + kBlock + columns <= cells && own[-1] == *own &&
-                         own[kBlock] == *own && all_are(*own, own - columns) && all_are(*own, own + columns));
+  const auto remove = [&](int cell) {
+    if (labels[cell] != 0) inner[static_cast<std::size_t>(labels[cell] - 1)].remove(points[cell]);
   };
-  visit_cells(0, cells, lies_amid, [&](int cell) {
-    const int* own = labels + cell;
-    if (*own == 0) return;
-    const bool amid = cell >= columns && cell + columns < cells && own[-1] == *own && own[1] == *own &&
-                      own[-columns] == *own && own[columns] == *own;
-    if (!amid) inner[static_cast<std::size_t>(*own - 1)].remove(points[cell]);
-  });
+  const auto mark = [&](int first, Marks& marks) { return mark_borders(labels + first, columns, marks); };
+  // The rows at the border of the image lie beside no plane.
+  for (int cell = 0; cell < columns; ++cell) remove(cell);
+  visit_marked(columns, cells - columns, mark, remove);
+  for (int cell = std::max(columns, cells - columns); cell < cells; ++cell) remove(cell);
   return inner;
 }
 
