@@ -123,17 +123,16 @@ void merge_touching_planes(const CellConnectivity& connectivity, const Segmentat
   touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
   const std::vector<int> merged = merge_best_first(found.sums, touching, options.merge_tolerance * options.plane_sigma);
 
-  std::vector<int> label_of(merged.size(), 0);
+  std::vector<int> label_of(merged.size() + 1, 0);  // by old label
   std::vector<PointSums> sums;
   for (std::size_t i = 0; i < merged.size(); ++i) {
     if (merged[i] != static_cast<int>(i)) continue;
     sums.push_back(found.sums[i]);
-    label_of[i] = static_cast<int>(sums.size());
+    label_of[i + 1] = static_cast<int>(sums.size());
   }
+  for (std::size_t i = 0; i < merged.size(); ++i) label_of[i + 1] = label_of[static_cast<std::size_t>(merged[i]) + 1];
   if (sums.size() < merged.size()) {  // else every plane keeps its label
-    for (int& label : found.labels) {
-      if (label != 0) label = label_of[static_cast<std::size_t>(merged[static_cast<std::size_t>(label - 1)])];
-    }
+    for (int& label : found.labels) label = label_of[static_cast<std::size_t>(label)];
   }
   found.planes.clear();
   for (const PointSums& plane : sums) found.planes.push_back(plane.fit());

@@ -8,6 +8,8 @@ namespace foresight {
 // The covariance of points: a symmetric matrix. Its eigenvalues and eigenvectors come from arithmetic and square roots
 // alone, which give the same bits on every machine; the cosines of the usual closed form do not.
 struct Scatter {
+  static constexpr double kNothing = 1e-10;  // next to 1, of numbers of which hardly more than rounding is left
+
   double xx, yy, zz, xy, xz, yz;
 
   explicit Scatter(const PointSums& sums) {
@@ -33,7 +35,8 @@ struct Scatter {
   [[nodiscard]] double smallest() const {
     constexpr int kMostSteps = 40;
     const double c0 = determinant(), c1 = minors(), c2 = trace();
-    const double enough = 1e-8 * c1;  // next to the middle eigenvalue: the error left is the square of it
+    if (c1 <= kNothing * c2 * c2) return 0.0;  // points on a line
+    const double enough = 1e-8 * c1;           // next to the middle eigenvalue: the error left is the square of it
     double value = 0.0;
     for (int i = 0; i < kMostSteps; ++i) {
       const double slope = c1 - value * (2.0 * c2 - 3.0 * value);
@@ -64,7 +67,7 @@ struct Scatter {
     const double x = std::abs(of_x.x()), y = std::abs(of_y.y()), z = std::abs(of_z.z());
     const Eigen::Vector3d& longest = z >= x && z >= y ? of_z : (y >= x ? of_y : of_x);
     const double length = std::sqrt(longest.squaredNorm());
-    if (length > 1e-20 * trace() * trace()) return longest / length;
+    if (length > kNothing * trace() * trace()) return longest / length;
     return across_line();
   }
 
