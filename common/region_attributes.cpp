@@ -113,9 +113,9 @@ class Projector {
   [[nodiscard]] double slope(double across, double down) const {
     return -region_.normal.dot(Eigen::Vector3d(across, down, 1.0));
   }
-  // The area element of a plane over the grid is depth^2 / (slope fx fy).
-  [[nodiscard]] double area(double depth, double at_slope) const {
-    return depth * depth / (at_slope * rays_.camera.fx * rays_.camera.fy);
+  // The area element of a plane over the grid.
+  static double area(double depth, double at_slope, double fx, double fy) {
+    return depth * depth / (at_slope * fx * fy);
   }
 
   // Cells one after the other in a row.
@@ -153,7 +153,7 @@ class Projector {
       const double z = depth - origin.z();
       along_u[i] = u.x() * x + u.y() * y + u.z() * z;
       along_v[i] = v.x() * x + v.y() * y + v.z() * z;
-      areas[i] = depth * depth / (at_slope * fx * fy);
+      areas[i] = area(depth, at_slope, fx, fy);
     }
   }
 
@@ -171,7 +171,7 @@ class Projector {
     }
     point -= origin_;
     const Eigen::Vector2d p(axes_.u.dot(point), axes_.v.dot(point));
-    patch.add(p, area(origin_.z() + point.z(), std::max(at_slope, least_slope)));
+    patch.add(p, area(origin_.z() + point.z(), std::max(at_slope, least_slope), rays_.camera.fx, rays_.camera.fy));
     patch.outline.push_back(p);
   }
 
