@@ -138,6 +138,18 @@ void time_extract(benchmark::State& state, const Case& scan) {
   count(state, "regions", static_cast<double>(scan.regions.size()));
 }
 
+// Extraction alone, where images are large: 512 x 512 cells of a noisy scanner, most of them with data.
+void time_extract_large(benchmark::State& state, const Scene& scene, const SensorModel& sensor) {
+  const SegmentationOptions options = segmentation_options_for(sensor);
+  std::size_t regions = 0;
+  for (auto step : state) {
+    (void)step;
+    regions = extract_regions(scene.scan.image, sensor.camera, options).size();
+  }
+  count(state, "points", count_valid(scene.scan.image));
+  count(state, "regions", static_cast<double>(regions));
+}
+
 void time_field(benchmark::State& state, const Case& scan) {
   for (auto step : state) {
     (void)step;
@@ -258,6 +270,12 @@ int run(const ExperimentOptions& options) {
   const Database database = database_of(options, models, sensor);
   const std::vector<Case> cases = fixed_cases(models, sensor, database);
   register_all(cases);
+  const int several = std::min(6, static_cast<int>(models.size()));
+  const SensorModel large = sensor_of(project_path("models/sensors/abw.textproto"));
+  const Scene scene = generate_scene(models, large, {several, several, true}, 1, 0);
+  benchmark::RegisterBenchmark("extract/512x512", [&](benchmark::State& state) {
+    time_extract_large(state, scene, large);
+  })->Unit(benchmark::kMicrosecond);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

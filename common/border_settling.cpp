@@ -3,36 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <utility>
 
 #include "common/growth_state.h"
+#include "common/plane_contacts.h"
 
 namespace foresight {
 namespace {
-
-// Connected cells of different planes: one and the next to its right or below it.
-struct Contact {
-  int cell, next;
-};
-
-std::vector<Contact> contacts_of(const Growth& growth) {
-  std::vector<Contact> contacts;
-  const std::vector<int>& labels = growth.found.labels;
-  const auto columns = static_cast<std::size_t>(growth.image.columns);
-  const auto differs = [&](int cell, int next) {
-    const int other = next < 0 ? 0 : labels[static_cast<std::size_t>(next)];
-    if (other != 0 && other != labels[static_cast<std::size_t>(cell)]) contacts.push_back({cell, next});
-  };
-  for (std::size_t at = 0; at < labels.size(); ++at) {
-    if (labels[at] == 0) continue;
-    const int cell = static_cast<int>(at);
-    // Most cells lie amid their own kind, which needs no look at the connectivity.
-    if (at + 1 < labels.size() && labels[at + 1] != labels[at]) differs(cell, growth.connectivity.right(cell));
-    if (at + columns < labels.size() && labels[at + columns] != labels[at])
-      differs(cell, growth.connectivity.down(cell));
-  }
-  return contacts;
-}
 
 // How two touching planes meet.
 struct Meeting {
@@ -50,7 +27,46 @@ struct Meeting {
     return a > least && b > least ? 1 : 0;
   }
 };
-using Meetings = std::map<std::pair<int, int>, Meeting>;  // by labels, the lower first
+
+// Of all planes that touch.
+class Meetings {
+ public:
+  explicit Meetings(std::size_t planes) : first_(planes + 1, -1) {}
+
+  // Of two planes by their labels, the lower first.
+  Meeting& of(std::pair<int, int> labels) {
+    int& first = first_[static_cast<std::size_t>(labels.first)];
+    for (int i = first; i >= 0; i = entry(i).next) {
+      if (entry(i).second == labels.second) return entry(i).meeting;
+    }
+    entries_.push_back({labels.second, first, {}, 0});
+    first = static_cast<int>(entries_.size()) - 1;
+    return entries_.back().meeting;
+  }
+  void find_creases(double least) {
+    for (Entry& each : entries_) each.crease = each.meeting.crease(least);
+  }
+  // Meeting::crease(), or 0 where the planes did not touch.
+  [[nodiscard]] int crease(std::pair<int, int> labels) const {
+    for (int i = first_[static_cast<std::size_t>(labels.first)]; i >= 0;) {
+      const Entry& each = entries_[static_cast<std::size_t>(i)];
+      if (each.second == labels.second) return each.crease;
+      i = each.next;
+    }
+    return 0;
+  }
+
+ private:
+  struct Entry {
+    int second, next;  // the higher label; the next entry of the same lower one, or -1
+    Meeting meeting;
+    int crease;
+  };
+  [[nodiscard]] Entry& entry(int i) { return entries_[static_cast<std::size_t>(i)]; }
+
+  std::vector<int> first_;  // by the lower label: an entry, or -1
+  std::vector<Entry> entries_;
+};
 
 // The cell `steps` links away from a border, or -1 when that is another plane's. next: the way to go.
 template <typename Next>
@@ -64,13 +80,13 @@ int some_way_inside(Growth& growth, int cell, int steps, Next&& next) {
 }
 
 Meetings find_meetings(Growth& growth, const std::vector<Contact>& contacts) {
-  Meetings meetings;
+  Meetings meetings(growth.found.planes.size());
   const CellConnectivity& links = growth.connectivity;
   const int steps = growth.options.seed_block;
   const auto meet = [&](int before, int after, auto&& backwards, auto&& forwards) {
     const int a = growth.label(before);
     const int b = growth.label(after);
-    Meeting& meeting = meetings[std::minmax(a, b)];
+    Meeting& meeting = meetings.of(std::minmax(a, b));
     const int in_a = some_way_inside(growth, before, steps, backwards);
     const int in_b = some_way_inside(growth, after, steps, forwards);
     if (in_a >= 0) {
@@ -93,6 +109,7 @@ Meetings find_meetings(Growth& growth, const std::vector<Contact>& contacts) {
       meet(cell, next, up, down);
     }
   }
+  meetings.find_creases(growth.options.plane_sigma);
   return meetings;
 }
 
@@ -141,7 +158,7 @@ std::vector<int> doubtful_cells(Growth& growth) {
     doubtful[static_cast<std::size_t>(cell)] = 1;
     doubts.push_back({cell, other});
   };
-  for (const auto& [cell, next] : contacts_of(growth)) {
+  for (const auto& [cell, next] : contacts_of(growth.connectivity, growth.found.labels)) {
     doubt(cell, growth.label(next));
     doubt(next, growth.label(cell));
   }
@@ -193,7 +210,7 @@ void settle_borders(const RangeImage& image, const CellConnectivity& connectivit
   Growth growth{image, connectivity, options, found};
   growth.measure_reach();
   share_out_doubtful_cells(growth);
-  const std::vector<Contact> contacts = contacts_of(growth);
+  const std::vector<Contact> contacts = contacts_of(growth.connectivity, growth.found.labels);
   const Meetings meetings = find_meetings(growth, contacts);
   // A border moves by as many cells as the patches that straddled it are wide, not farther: planes also cross where
   // there is no crease, as that of a block's side does on the floor beside the block.
@@ -211,8 +228,7 @@ void settle_borders(const RangeImage& image, const CellConnectivity& connectivit
     connectivity.for_each_neighbour(cell, [&](int next) {
       const int other = growth.label(next);
       if (other == 0 || other == own || other == best) return;
-      const auto meeting = meetings.find(std::minmax(own, other));
-      const int crease = meeting == meetings.end() ? 0 : meeting->second.crease(options.plane_sigma);
+      const int crease = meetings.crease(std::minmax(own, other));
       if (!belongs_to(growth, cell, next, own, other, crease)) return;
       if (best == own || growth.distance(cell, other) < growth.distance(cell, best)) best = other;
     });

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <queue>
 
+#include "common/plane_contacts.h"
+
 namespace foresight {
 namespace {
 
@@ -58,6 +60,15 @@ double relative_noise(const Plane& plane) {
   return std::max(kSideways, std::abs(plane.normal.z()));
 }
 
+std::vector<ReachTest> reach_tests(const Coordinates& points, const SegmentationOptions& options,
+                                   const std::vector<Plane>& planes) {
+  std::vector<ReachTest> tests;
+  tests.reserve(planes.size());
+  for (const Plane& plane : planes)
+    tests.emplace_back(points, plane, options.grow_tolerance * options.plane_sigma * relative_noise(plane));
+  return tests;
+}
+
 double fit_error(const PointSums& sums, const Plane& plane) {
   const double noise = relative_noise(plane);
   return sums.mean_squared_distance(plane) / (noise * noise);
@@ -103,29 +114,25 @@ std::vector<int> merge_best_first(std::vector<PointSums>& patches, const std::ve
 void merge_touching_planes(const CellConnectivity& connectivity, const SegmentationOptions& options,
                            PlaneLabels& found) {
   std::vector<std::pair<int, int>> touching;
-  for (int cell = 0; cell < static_cast<int>(found.labels.size()); ++cell) {
-    const int own = found.labels[static_cast<std::size_t>(cell)];
-    if (own == 0) continue;
-    for (const int next : {connectivity.right(cell), connectivity.down(cell)}) {
-      const int other = next < 0 ? 0 : found.labels[static_cast<std::size_t>(next)];
-      if (other == 0 || other == own) continue;
-      const std::pair<int, int> pair = std::minmax(own - 1, other - 1);
-      if (touching.empty() || touching.back() != pair) touching.push_back(pair);
-    }
+  for (const Contact& contact : contacts_of(connectivity, found.labels)) {
+    const std::pair<int, int> pair = std::minmax(found.labels[static_cast<std::size_t>(contact.cell)] - 1,
+                                                 found.labels[static_cast<std::size_t>(contact.next)] - 1);
+    if (touching.empty() || touching.back() != pair) touching.push_back(pair);
   }
   std::sort(touching.begin(), touching.end());
   touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
   const std::vector<int> merged = merge_best_first(found.sums, touching, options.merge_tolerance * options.plane_sigma);
 
-  std::vector<int> label_of(merged.size(), 0);
+  std::vector<int> label_of(merged.size() + 1, 0);  // by old label
   std::vector<PointSums> sums;
   for (std::size_t i = 0; i < merged.size(); ++i) {
     if (merged[i] != static_cast<int>(i)) continue;
     sums.push_back(found.sums[i]);
-    label_of[i] = static_cast<int>(sums.size());
+    label_of[i + 1] = static_cast<int>(sums.size());
   }
-  for (int& label : found.labels) {
-    if (label != 0) label = label_of[static_cast<std::size_t>(merged[static_cast<std::size_t>(label - 1)])];
+  for (std::size_t i = 0; i < merged.size(); ++i) label_of[i + 1] = label_of[static_cast<std::size_t>(merged[i]) + 1];
+  if (sums.size() < merged.size()) {  // else every plane keeps its label
+    for (int& label : found.labels) label = label_of[static_cast<std::size_t>(label)];
   }
   found.planes.clear();
   for (const PointSums& plane : sums) found.planes.push_back(plane.fit());

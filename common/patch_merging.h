@@ -25,6 +25,10 @@ struct PlaneLabels {
 // so points lie nearer to a plane seen at a slant; not without limit, because they err a little sideways too.
 [[nodiscard]] double relative_noise(const Plane& plane);
 
+// Which data points lie within the grow tolerance, by plane.
+[[nodiscard]] std::vector<ReachTest> reach_tests(const Coordinates& points, const SegmentationOptions& options,
+                                                 const std::vector<Plane>& planes);
+
 // Root mean square distance from the plane in standard deviations of the data points about it, squared; plane_sigma
 // = 1.
 [[nodiscard]] double fit_error(const PointSums& sums, const Plane& plane);

@@ -19,13 +19,15 @@ class PointSums {
   void remove(const Eigen::Vector3d& point) { add(point, -1.0); }
   void add(const PointSums& other) {
     count_ += other.count_;
-    sum_ += other.sum_;
-    squares_ += other.squares_;
-    products_ += other.products_;
+    z_ += other.z_;
+    xy_ += other.xy_;
+    xx_yy_ += other.xx_yy_;
+    xz_yz_ += other.xz_yz_;
+    zz_xy_ += other.zz_xy_;
   }
 
   [[nodiscard]] double count() const { return count_; }
-  [[nodiscard]] Eigen::Vector3d mean() const { return sum_ / count_; }
+  [[nodiscard]] Eigen::Vector3d mean() const { return Eigen::Vector3d(xy_[0], xy_[1], z_) / count_; }
   // Plane of least mean squared distance, its normal towards the origin (the sensor). REQUIRES: count() >= 3.
   [[nodiscard]] Plane fit() const;
   // Mean squared distance of the points from the line that fits them best, in the plane that does: how wide the narrow
@@ -35,19 +37,27 @@ class PointSums {
   [[nodiscard]] double mean_squared_distance(const Plane& plane) const;
 
  private:
+  using Pair = Eigen::Array2d;  // what one vector instruction adds
+
   void add(const Eigen::Vector3d& point, double weight) {
-    const Eigen::Vector3d weighted = weight * point;
+    const Pair xy(point.x(), point.y());
+    const double z = point.z();
     count_ += weight;
-    sum_ += weighted;
-    squares_ += weighted.cwiseProduct(point);
-    products_ += Eigen::Vector3d(weighted.x() * point.y(), weighted.x() * point.z(), weighted.y() * point.z());
+    z_ += weight * z;
+    xy_ += weight * xy;
+    xx_yy_ += weight * xy * xy;
+    xz_yz_ += weight * xy * z;
+    zz_xy_ += weight * Pair(z, xy[0]) * Pair(z, xy[1]);
   }
-  [[nodiscard]] Eigen::Matrix3d covariance() const;
 
   double count_ = 0.0;
-  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d squares_ = Eigen::Vector3d::Zero();   // of xx, yy, zz
-  Eigen::Vector3d products_ = Eigen::Vector3d::Zero();  // of xy, xz, yz
+  double z_ = 0.0;
+  Pair xy_ = Pair::Zero();
+  Pair xx_yy_ = Pair::Zero();  // of products
+  Pair xz_yz_ = Pair::Zero();
+  Pair zz_xy_ = Pair::Zero();
+
+  friend struct Scatter;
 };
 
 }  // namespace foresight

@@ -1,9 +1,8 @@
 #include "common/region_attributes.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/Eigenvalues>
 
 #include "common/region_boundary.h"
 
@@ -21,28 +20,20 @@ PlaneAxes axes_of(const Eigen::Vector3d& normal) {
   return {u, normal.cross(u)};
 }
 
-// A cell's patch of the region's plane.
-struct Footprint {
-  Eigen::Vector3d point;
-  double area;  // Unit: mm^2.
-};
+// The rays of an image's cells: a camera's, by column and row.
+struct CellRays {
+  const PinholeCamera& camera;
+  std::vector<double> across, down;
+  double longest = 1.0;  // of the rays, scaled so that z = 1
 
-// Where the ray of a cell meets the plane: the data point without the noise along its ray. Rays that graze the plane (beyond
-// 84 degrees: only scraps of a few cells have such planes) meet it nowhere sensible; there the data point itself is taken.
-Footprint footprint(const Region& region, const RangeImage& image, const PinholeCamera& camera, int cell) {
-  constexpr double kSmallestCosine = 0.1;
-  const Eigen::Vector3d ray = camera.ray(cell / camera.columns, cell % camera.columns);
-  const double slope = -region.normal.dot(ray);
-  const double least_slope = kSmallestCosine * ray.norm();
-  Eigen::Vector3d point = image[cell].cast<double>();
-  if (slope >= least_slope) {
-    point = (-region.offset / slope) * ray;
-  } else {
-    point -= (region.normal.dot(point) - region.offset) * region.normal;
+  explicit CellRays(const PinholeCamera& of) : camera(of) {
+    for (int column = 0; column < of.columns; ++column) across.push_back(of.ray(0, column).x());
+    for (int row = 0; row < of.rows; ++row) down.push_back(of.ray(row, 0).y());
+    for (const double x : {across.front(), across.back()}) {
+      for (const double y : {down.front(), down.back()}) longest = std::max(longest, Eigen::Vector3d(x, y, 1.0).norm());
+    }
   }
-  // The area element of a plane over the grid is depth^2 / (slope fx fy).
-  return {point, point.z() * point.z() / (std::max(slope, least_slope) * camera.fx * camera.fy)};
-}
+};
 
 // Andrew's monotone chain; counter-clockwise, no collinear points.
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
@@ -79,52 +70,159 @@ double diameter(const std::vector<Eigen::Vector2d>& hull) {
   return std::sqrt(largest);
 }
 
-// First and second moments of the patch in its plane.
-struct PatchMoments {
+// A region in the coordinates of its plane.
+struct Patch {
   double area = 0.0;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d outer = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();       // first moments
+  Eigen::Vector3d products = Eigen::Vector3d::Zero();  // second moments: of xx, xy, yy
+  std::vector<Eigen::Vector2d> outline;                // points with the convex hull of all
+
+  void add(const Eigen::Vector2d& p, double cell_area) {
+    const Eigen::Vector2d weighted = cell_area * p;
+    area += cell_area;
+    sum += weighted;
+    products += Eigen::Vector3d(weighted.x() * p.x(), weighted.y() * p.x(), weighted.y() * p.y());
+  }
 };
+
+// Puts the cells of a region on its plane: each where its ray meets the plane, which is the data point without the
+// noise along the ray.
+class Projector {
+ public:
+  Projector(const Region& region, const RangeImage& image, const CellRays& rays, const PlaneAxes& axes)
+      : region_(region), image_(image), rays_(rays), axes_(axes), origin_(region.offset * region.normal) {}
+
+  Patch project() {
+    Patch patch;
+    const std::vector<int>& cells = region_.cells;
+    for (std::size_t first = 0, end = 0; first < cells.size(); first = end) {
+      const int row = cells[first] / image_.columns;
+      const int next_row = (row + 1) * image_.columns;
+      while (end < cells.size() && cells[end] - cells[first] == static_cast<int>(end - first) && cells[end] < next_row)
+        ++end;
+      add_span(row, cells[first] - row * image_.columns, end - first, patch);
+    }
+    return patch;
+  }
+
+ private:
+  // Rays that graze the plane (beyond 84 degrees: only scraps of a few cells have such planes) meet it nowhere
+  // sensible.
+  static constexpr double kSmallestCosine = 0.1;
+
+  [[nodiscard]] double slope(double across, double down) const {
+    return -region_.normal.dot(Eigen::Vector3d(across, down, 1.0));
+  }
+  // The area element of a plane over the grid.
+  static double area(double depth, double at_slope, double fx, double fy) {
+    return depth * depth / (at_slope * fx * fy);
+  }
+
+  // Cells one after the other in a row.
+  void add_span(int row, int column, std::size_t count, Patch& patch) {
+    const double* across = rays_.across.data() + column;
+    const double down = rays_.down[static_cast<std::size_t>(row)];
+    const double least_slope = kSmallestCosine * rays_.longest;
+    // The slope goes up or down all the way.
+    if (slope(across[0], down) < least_slope || slope(across[count - 1], down) < least_slope) {
+      for (int i = 0; i < static_cast<int>(count); ++i) add_grazed(row, column + i, patch);
+      return;
+    }
+    span_.resize(3 * count);
+    place_span(across, down, count);
+    const auto point = [&](std::size_t i) { return Eigen::Vector2d(span_[i], span_[count + i]); };
+    for (std::size_t i = 0; i < count; ++i) patch.add(point(i), span_[2 * count + i]);
+    // The rays lie in a plane and meet the region's in a line: the first and the last are all that the hull needs.
+    patch.outline.push_back(point(0));
+    if (count > 1) patch.outline.push_back(point(count - 1));
+  }
+
+  // Fills span_. A loop for vector instructions.
+  void place_span(const double* across, double down, std::size_t count) {
+    const Eigen::Vector3d n = region_.normal, u = axes_.u, v = axes_.v, origin = origin_;
+    const double offset = region_.offset;
+    const double fx = rays_.camera.fx, fy = rays_.camera.fy;
+    double* along_u = span_.data();
+    double* along_v = along_u + count;
+    double* areas = along_v + count;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double at_slope = -(n.x() * across[i] + n.y() * down + n.z());
+      const double depth = -offset / at_slope;
+      const double x = depth * across[i] - origin.x();
+      const double y = depth * down - origin.y();
+      const double z = depth - origin.z();
+      along_u[i] = u.x() * x + u.y() * y + u.z() * z;
+      along_v[i] = v.x() * x + v.y() * y + v.z() * z;
+      areas[i] = area(depth, at_slope, fx, fy);
+    }
+  }
+
+  // Where the ray does not meet the plane, the data point itself is put on it.
+  void add_grazed(int row, int column, Patch& patch) const {
+    const Eigen::Vector3d ray(rays_.across[static_cast<std::size_t>(column)], rays_.down[static_cast<std::size_t>(row)],
+                              1.0);
+    const double least_slope = kSmallestCosine * ray.norm();
+    const double at_slope = slope(ray.x(), ray.y());
+    Eigen::Vector3d point = image_[image_.cell(row, column)].cast<double>();
+    if (at_slope >= least_slope) {
+      point = (-region_.offset / at_slope) * ray;
+    } else {
+      point -= (region_.normal.dot(point) - region_.offset) * region_.normal;
+    }
+    point -= origin_;
+    const Eigen::Vector2d p(axes_.u.dot(point), axes_.v.dot(point));
+    patch.add(p, area(origin_.z() + point.z(), std::max(at_slope, least_slope), rays_.camera.fx, rays_.camera.fy));
+    patch.outline.push_back(p);
+  }
+
+  const Region& region_;
+  const RangeImage& image_;
+  const CellRays& rays_;
+  const PlaneAxes& axes_;
+  Eigen::Vector3d origin_;
+  std::vector<double> span_;  // by cell: along u, along v, areas
+};
+
+DescribedRegion describe(Region region, const RangeImage& image, const CellRays& rays) {
+  const PlaneAxes axes = axes_of(region.normal);
+  Patch patch = Projector(region, image, rays, axes).project();
+  const Eigen::Vector2d mean = patch.sum / patch.area;
+  const Eigen::Vector3d second = patch.products / patch.area;
+  Eigen::Matrix2d covariance;
+  covariance << second.x(), second.y(), second.y(), second.z();
+  covariance -= mean * mean.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
+  const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(patch.outline));
+  const auto lift = [&](const Eigen::Vector2d& p) {
+    return Eigen::Vector3d(region.offset * region.normal + p.x() * axes.u + p.y() * axes.v);
+  };
+
+  DescribedRegion described;
+  described.attributes = {patch.area, std::sqrt(std::max(0.0, solver.eigenvalues()[1])),
+                          std::sqrt(std::max(0.0, solver.eigenvalues()[0])), diameter(hull)};
+  described.centroid = lift(mean);
+  described.major_axis = solver.eigenvectors()(0, 1) * axes.u + solver.eigenvectors()(1, 1) * axes.v;
+  described.hull.reserve(hull.size());
+  for (const Eigen::Vector2d& p : hull) described.hull.push_back(lift(p));
+  described.region = std::move(region);
+  return described;
+}
 
 }  // namespace
 
 DescribedRegion describe(Region region, const RangeImage& image, const PinholeCamera& camera) {
-  const PlaneAxes axes = axes_of(region.normal);
-  const Eigen::Vector3d origin = region.offset * region.normal;
-  PatchMoments moments;
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(region.cells.size());
-  for (const int cell : region.cells) {
-    const Footprint foot = footprint(region, image, camera, cell);
-    const Eigen::Vector2d p(axes.u.dot(foot.point - origin), axes.v.dot(foot.point - origin));
-    moments.area += foot.area;
-    moments.sum += foot.area * p;
-    moments.outer += foot.area * p * p.transpose();
-    points.push_back(p);
-  }
-  const Eigen::Vector2d mean = moments.sum / moments.area;
-  const Eigen::Matrix2d covariance = moments.outer / moments.area - mean * mean.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
-  const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(points));
-  const auto lift = [&](const Eigen::Vector2d& p) { return Eigen::Vector3d(origin + p.x() * axes.u + p.y() * axes.v); };
-
-  DescribedRegion described;
-  described.attributes = {moments.area, std::sqrt(std::max(0.0, solver.eigenvalues()[1])),
-                          std::sqrt(std::max(0.0, solver.eigenvalues()[0])), diameter(hull)};
-  described.centroid = lift(mean);
-  described.major_axis = solver.eigenvectors()(0, 1) * axes.u + solver.eigenvectors()(1, 1) * axes.v;
-  for (const Eigen::Vector2d& p : hull) described.hull.push_back(lift(p));
-  described.region = std::move(region);
-  return described;
+  return describe(std::move(region), image, CellRays(camera));
 }
 
 std::vector<DescribedRegion> extract_regions(const RangeImage& image, const PinholeCamera& camera,
                                              const SegmentationOptions& options) {
   std::vector<Region> regions = segment(image, options);
   const std::vector<double> cut = cut_shares(regions, image, camera);
+  const CellRays rays(camera);
   std::vector<DescribedRegion> described;
+  described.reserve(regions.size());
   for (std::size_t r = 0; r < regions.size(); ++r) {
-    described.push_back(describe(std::move(regions[r]), image, camera));
+    described.push_back(describe(std::move(regions[r]), image, rays));
     described.back().cut_share = cut[r];
   }
   return described;

@@ -15,26 +15,62 @@ class GrowthQueue {
   struct Candidate {
     int cell, label;
   };
+  GrowthQueue() { latest_.fill(-1); }
+
   // share: distance as a share of the reach, 0 to 1.
   void push(double share, Candidate candidate) {
     const auto bucket = static_cast<std::size_t>(share * (kBuckets - 1));
-    buckets_[bucket].push_back(candidate);
+    entries_.push_back({candidate, latest_[bucket]});
+    latest_[bucket] = static_cast<int>(entries_.size()) - 1;
     first_ = std::min(first_, bucket);
   }
   // The nearest candidate, the latest of several; false when there is none.
   bool pop(Candidate& nearest) {
-    while (first_ < kBuckets && buckets_[first_].empty()) ++first_;
+    while (first_ < kBuckets && latest_[first_] < 0) ++first_;
     if (first_ == kBuckets) return false;
-    nearest = buckets_[first_].back();
-    buckets_[first_].pop_back();
+    const Entry& entry = entries_[static_cast<std::size_t>(latest_[first_])];
+    nearest = entry.candidate;
+    latest_[first_] = entry.before;
     return true;
   }
 
  private:
+  struct Entry {
+    Candidate candidate;
+    int before;  // the one pushed before it with the same distance, or -1
+  };
   static constexpr std::size_t kBuckets = 64;
   std::size_t first_ = kBuckets;
-  std::array<std::vector<Candidate>, kBuckets> buckets_;
+  std::array<int, kBuckets> latest_;  // by bucket: index of the entry pushed last, or -1
+  std::vector<Entry> entries_;
 };
+
+// Sums without the cells beside other planes or none. By plane.
+std::vector<PointSums> sums_of_inner_cells(const Coordinates& points, const PlaneLabels& found) {
+  std::vector<PointSums> inner = found.sums;
+  const int* labels = found.labels.data();
+  const int columns = points.columns;
+  const int cells = points.size();
+  const auto remove = [&](int cell) {
+    if (labels[cell] != 0) inner[static_cast<std::size_t>(labels[cell] - 1)].remove(points[cell]);
+  };
+  const auto mark = [&](int first, Marks& marks) { return mark_borders(labels + first, columns, marks); };
+  // The rows at the border of the image lie beside no plane.
+  for (int cell = 0; cell < columns; ++cell) remove(cell);
+  visit_marked(columns, cells - columns, mark, remove);
+  for (int cell = std::max(columns, cells - columns); cell < cells; ++cell) remove(cell);
+  return inner;
+}
+
+void fit_inner_cells(const Coordinates& points, const SegmentationOptions& options, PlaneLabels& found) {
+  const std::vector<PointSums> inner = sums_of_inner_cells(points, found);
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    if (found.sums[i].count() >= 3.0) found.planes[i] = found.sums[i].fit();
+    if (inner[i].count() < options.smallest_region) continue;
+    const Plane plane = inner[i].fit();
+    if (is_steady(inner[i], plane, options)) found.planes[i] = plane;
+  }
+}
 
 }  // namespace
 
@@ -50,15 +86,19 @@ void grow_planes(const RangeImage& image, const CellConnectivity& connectivity, 
       if (share <= 1.0) queue.push(share, {neighbour, label});
     });
   };
-  for (int cell = 0; cell < image.size(); ++cell) {
-    if (growth.label(cell) != 0) continue;
+  const int* labels = found.labels.data();
+  const auto none_is_free = [&](int block) {
+    return !any_is_free(labels + block) || !connectivity.any_connected(block);
+  };
+  visit_cells(0, image.size(), none_is_free, [&](int cell) {
+    if (labels[cell] != 0) return;
     connectivity.for_each_neighbour(cell, [&](int neighbour) {
       const int label = growth.label(neighbour);
       if (label == 0) return;
       const double share = growth.distance(cell, label) / growth.reach(label);
       if (share <= 1.0) queue.push(share, {cell, label});
     });
-  }
+  });
   GrowthQueue::Candidate nearest{};
   while (queue.pop(nearest)) {
     if (growth.label(nearest.cell) != 0) continue;
@@ -67,34 +107,23 @@ void grow_planes(const RangeImage& image, const CellConnectivity& connectivity, 
   }
 }
 
-void refit_planes(const RangeImage& image, const SegmentationOptions& options, PlaneLabels& found) {
-  std::vector<PointSums> inner = found.sums;
-  const auto columns = static_cast<std::size_t>(image.columns);
-  const auto point = [&](std::size_t at) { return Eigen::Vector3d(image.points[at].cast<double>()); };
-  for (std::size_t at = 0; at < found.labels.size(); ++at) {
-    const int own = found.labels[at];
-    if (own == 0) continue;
-    const bool amid = at >= columns && at + columns < found.labels.size() && found.labels[at - 1] == own &&
-                      found.labels[at + 1] == own && found.labels[at - columns] == own &&
-                      found.labels[at + columns] == own;
-    if (!amid) inner[static_cast<std::size_t>(own - 1)].remove(point(at));
-  }
-  std::vector<double> reach(found.planes.size());
-  for (std::size_t i = 0; i < inner.size(); ++i) {
-    if (found.sums[i].count() >= 3.0) found.planes[i] = found.sums[i].fit();
-    if (inner[i].count() >= options.smallest_region) {
-      const Plane plane = inner[i].fit();
-      if (is_steady(inner[i], plane, options)) found.planes[i] = plane;
-    }
-    reach[i] = options.grow_tolerance * options.plane_sigma * relative_noise(found.planes[i]);
-  }
-  for (std::size_t at = 0; at < found.labels.size(); ++at) {
-    if (found.labels[at] == 0) continue;
-    const auto own = static_cast<std::size_t>(found.labels[at] - 1);
-    if (std::abs(found.planes[own].distance(point(at))) <= reach[own]) continue;
-    found.sums[own].remove(point(at));
-    found.labels[at] = 0;
-  }
+void refit_planes(const Coordinates& points, const SegmentationOptions& options, PlaneLabels& found) {
+  fit_inner_cells(points, options, found);
+  const std::vector<ReachTest> within_reach = reach_tests(points, options, found.planes);
+  const int* labels = found.labels.data();
+  const auto keeps_all = [&](int block) {
+    const int own = labels[block];
+    return all_are(own, labels + block) &&
+           (own == 0 || within_reach[static_cast<std::size_t>(own - 1)].holds_for_block(block));
+  };
+  visit_cells(0, points.size(), keeps_all, [&](int cell) {
+    int& label = found.labels[static_cast<std::size_t>(cell)];
+    if (label == 0) return;
+    const auto own = static_cast<std::size_t>(label - 1);
+    if (within_reach[own].holds(cell)) return;
+    found.sums[own].remove(points[cell]);
+    label = 0;
+  });
 }
 
 }  // namespace foresight

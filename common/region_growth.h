@@ -12,6 +12,6 @@ void grow_planes(const RangeImage& image, const CellConnectivity& connectivity, 
 
 // Planes from the cells as they stand now, as far as possible without those beside other planes or none, whose data
 // points may lie between two surfaces. Sets free the cells that are out of the grow tolerance then.
-void refit_planes(const RangeImage& image, const SegmentationOptions& options, PlaneLabels& found);
+void refit_planes(const Coordinates& points, const SegmentationOptions& options, PlaneLabels& found);
 
 }  // namespace foresight

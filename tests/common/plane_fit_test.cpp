@@ -72,6 +72,38 @@ TEST(PlaneFit, removed_points_are_as_if_never_added) {
   EXPECT_NEAR(sums.mean_squared_distance(sums.fit()), before, 1e-6);
 }
 
+// Points on a line or at one place lie on many planes: any of them will do.
+TEST(PlaneFit, finds_some_plane_through_points_that_lie_on_many) {
+  Random random(10);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d at(random.uniform(-100, 100), random.uniform(-100, 100), 900);
+    const Eigen::Vector3d along = i == 0 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(10.0 * random.direction());
+    PointSums sums;
+    for (int k = 0; k < 5; ++k) sums.add(at + k * along);
+    const Plane plane = sums.fit();
+    EXPECT_NEAR(plane.normal.norm(), 1.0, 1e-9);
+    EXPECT_NEAR(sums.mean_squared_distance(plane), 0.0, 1e-6);
+    EXPECT_NEAR(sums.narrow_spread(), 0.0, 1e-6);
+  }
+}
+
+TEST(PlaneFit, finds_the_thin_side_of_any_box_of_points) {
+  Random random(11);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), random.direction());
+    const Eigen::Vector3d half(random.uniform(0.5, 1), random.uniform(1.1, 2), random.uniform(2.1, 100));
+    PointSums sums;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d sign((corner & 1) - 0.5, (corner & 2) / 2 - 0.5, (corner & 4) / 4 - 0.5);
+      sums.add(turn * Eigen::Vector3d(2.0 * sign.cwiseProduct(half)) + Eigen::Vector3d(0, 0, 500));
+    }
+    const Plane plane = sums.fit();
+    EXPECT_NEAR(std::abs(plane.normal.dot(turn * Eigen::Vector3d::UnitX())), 1.0, 1e-6);
+    EXPECT_NEAR(sums.mean_squared_distance(plane), half.x() * half.x(), 1e-6);
+    EXPECT_NEAR(sums.narrow_spread(), half.y() * half.y(), 1e-6);
+  }
+}
+
 TEST(PlaneFit, narrow_spread_is_that_of_the_narrow_side) {
   PointSums sums;
   for (int i = 0; i < 100; ++i) {

@@ -1,9 +1,9 @@
 #include "common/region_attributes.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <numbers>
-
-#include <gtest/gtest.h>
 
 #include "tests/images.h"
 
@@ -15,7 +15,8 @@ using test::Rectangle;
 using test::render;
 
 DescribedRegion only_region(const std::vector<Rectangle>& rectangles, const SensorModel& sensor = {}) {
-  const auto regions = extract_regions(render(rectangles, sensor.camera), sensor.camera, segmentation_options_for(sensor));
+  const auto regions =
+      extract_regions(render(rectangles, sensor.camera), sensor.camera, segmentation_options_for(sensor));
   EXPECT_EQ(regions.size(), 1U);
   return regions.at(0);
 }
@@ -23,7 +24,8 @@ DescribedRegion only_region(const std::vector<Rectangle>& rectangles, const Sens
 TEST(RegionAttributes, of_a_rectangle_are_those_of_geometry) {
   const DescribedRegion region = only_region({facing({0, 0, 900}, 120, 60)});
   EXPECT_NEAR(region.attributes[kArea], 7200, 0.03 * 7200);
-  EXPECT_NEAR(region.attributes[kMaxSecondMoment], 120 / std::sqrt(12.0), 1.0);  // standard deviation of a uniform interval
+  EXPECT_NEAR(region.attributes[kMaxSecondMoment], 120 / std::sqrt(12.0),
+              1.0);  // standard deviation of a uniform interval
   EXPECT_NEAR(region.attributes[kMinSecondMoment], 60 / std::sqrt(12.0), 1.0);
   EXPECT_NEAR(region.attributes[kMaxDiameter], std::hypot(120, 60), 3.0);
   EXPECT_NEAR(std::abs(region.major_axis.x()), 1.0, 1e-3);
@@ -31,7 +33,8 @@ TEST(RegionAttributes, of_a_rectangle_are_those_of_geometry) {
 
 TEST(RegionAttributes, do_not_change_under_a_rigid_motion) {
   const Rectangle flat = facing({0, 0, 0}, 110, 70);
-  const AttributeVector reference = only_region({moved(flat, Pose{Eigen::Matrix3d::Identity(), {0, 0, 900}})}).attributes;
+  const AttributeVector reference =
+      only_region({moved(flat, Pose{Eigen::Matrix3d::Identity(), {0, 0, 900}})}).attributes;
   Random random(11);
   for (int i = 0; i < 20; ++i) {
     Pose pose;
@@ -51,7 +54,41 @@ TEST(RegionAttributes, centroid_and_hull_lie_on_the_plane) {
   const DescribedRegion region = only_region({moved(facing({0, 0, 0}, 100, 80), pose)});
   EXPECT_LT((region.centroid - pose.translation).norm(), 1.5);
   ASSERT_GE(region.hull.size(), 4U);
-  for (const Eigen::Vector3d& corner : region.hull) EXPECT_NEAR(region.region.normal.dot(corner), region.region.offset, 1e-6);
+  for (const Eigen::Vector3d& corner : region.hull)
+    EXPECT_NEAR(region.region.normal.dot(corner), region.region.offset, 1e-6);
+}
+
+// Cells in any places, on planes that face the camera and on some that it sees at a grazing angle.
+TEST(RegionAttributes, hull_holds_every_cell_of_the_region) {
+  const PinholeCamera camera{64, 64, 80.0, 80.0, 31.5, 31.5};
+  Random random(12);
+  for (int i = 0; i < 40; ++i) {
+    Region region;
+    region.normal = i % 4 == 0 ? Eigen::Vector3d(0.99, 0, -std::sqrt(1 - 0.99 * 0.99))
+                               : Eigen::Vector3d(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), -1).normalized();
+    region.offset = -700;
+    RangeImage image(camera.rows, camera.columns);
+    std::vector<Eigen::Vector3d> points;
+    const int row = random.integer(0, 40), column = random.integer(0, 40);
+    for (int cell = image.cell(row, 0); cell < image.cell(row + 20, 0); ++cell) {
+      if (cell % 64 < column || cell % 64 > column + 20 || random.uniform(0, 1) < 0.3) continue;
+      const Eigen::Vector3d ray = camera.ray(cell / 64, cell % 64);
+      const double slope = -region.normal.dot(ray);
+      if (slope < 1e-3) continue;  // the plane is not in sight there
+      points.push_back((-region.offset / slope) * ray);
+      image[cell] = points.back().cast<float>();
+      region.cells.push_back(cell);
+    }
+    if (region.cells.size() < 12) continue;
+    const DescribedRegion described = describe(region, image, camera);
+    const double slack = 1e-6 * described.attributes[kArea] + 1e-2 * described.attributes[kMaxDiameter];
+    for (std::size_t k = 0; k < described.hull.size(); ++k) {
+      const Eigen::Vector3d& corner = described.hull[k];
+      const Eigen::Vector3d side = described.hull[(k + 1) % described.hull.size()] - corner;
+      for (const Eigen::Vector3d& point : points)
+        EXPECT_GT(side.cross(point - corner).dot(region.normal), -slack) << "region " << i;
+    }
+  }
 }
 
 TEST(RegionAttributes, hull_turns_counter_clockwise_about_the_normal) {
