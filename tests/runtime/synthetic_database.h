@@ -61,6 +61,14 @@ inline CompiledModel synthetic_model(const std::string& name, double scale) {
   model.vertices = {{0.0F, 0.0F, 0.0F}, {length, 0.0F, 0.5F}, {0.0F, length, 0.25F}, {0.0F, 0.0F, length}};
   model.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   model.triangle_faces = {3, 0, 2, 1};
+  GoldenScan& golden = model.golden_scan.emplace();
+  golden.first_row = 10;
+  golden.first_column = 20;
+  golden.rows = 2;
+  golden.columns = 3;
+  golden.depth_step = 0.375;
+  golden.depths = {1, 4, 20, 1, 2, 3, 1, 0};  // a cell without data, depths of 10, 9, 11 and 8 steps, one without
+  golden.T_sensor_model = {rotation_from_vector({-0.25, 1.0, 0.5}), {scale, -2.5, 900.0}};
   return model;
 }
 
