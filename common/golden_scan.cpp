@@ -1,6 +1,8 @@
 #include "common/golden_scan.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +18,8 @@ constexpr double kFinestShare = 1.0 / 65536.0;      // of the farthest distance
 constexpr double kNoiseShare = 0.25;                // of the noise
 constexpr double kFarthest = 1e6;                   // as in runtime/database_check.cpp. Unit: mm.
 constexpr std::int64_t kMostSteps = 1'000'000'000;  // of one depth
+constexpr int kRunOrder = 5;                        // of the code: runs are some tens of cells long
+constexpr int kHighestOrder = 15;
 
 // Depths of a window in steps, row by row; 0 where there are no data.
 struct Window {
@@ -36,11 +40,6 @@ struct Window {
   }
 };
 
-void append_varint(std::string& bytes, std::uint64_t number) {
-  for (; number >= 0x80; number >>= 7) bytes += static_cast<char>((number & 0x7F) | 0x80);
-  bytes += static_cast<char>(number);
-}
-
 // Small numbers of either sign become small ones without.
 std::uint64_t zigzag(std::int64_t number) {
   return (static_cast<std::uint64_t>(number) << 1) ^ static_cast<std::uint64_t>(number >> 63);
@@ -50,17 +49,63 @@ std::int64_t from_zigzag(std::uint64_t number) {
   return static_cast<std::int64_t>(number >> 1) ^ -static_cast<std::int64_t>(number & 1);
 }
 
-// None when the bytes end early, or the number is longer than any that is written.
-std::optional<std::uint64_t> take_varint(std::string_view& bytes) {
-  std::uint64_t number = 0;
-  for (unsigned shift = 0; shift < 35 && !bytes.empty(); shift += 7) {
-    const auto byte = static_cast<unsigned char>(bytes.front());
-    bytes.remove_prefix(1);
-    number |= static_cast<std::uint64_t>(byte & 0x7F) << shift;
-    if (byte < 0x80) return number;
-  }
-  return std::nullopt;
+// Bits that a number takes in an exponential Golomb code: of number + 2^order, and before them a zero for each but the
+// first and as many as the order.
+int code_length(std::uint64_t number, int order) {
+  return 2 * std::bit_width(number + (std::uint64_t{1} << order)) - 1 - order;
 }
+
+class BitWriter {
+ public:
+  explicit BitWriter(std::string& bytes) : bytes_(bytes) {}
+
+  void put(std::uint64_t number, int order) {
+    const std::uint64_t shown = number + (std::uint64_t{1} << order);
+    for (int bit = code_length(number, order) - 1; bit >= 0; --bit) {
+      if (used_ == 0) bytes_ += '\0';
+      const bool is_set = bit < 64 && (shown >> bit & 1) != 0;
+      if (is_set) bytes_.back() = static_cast<char>(bytes_.back() | 0x80 >> used_);
+      used_ = (used_ + 1) % 8;
+    }
+  }
+
+ private:
+  std::string& bytes_;
+  int used_ = 0;  // bits of the last byte; 0: all
+};
+
+class BitReader {
+ public:
+  explicit BitReader(std::string_view bytes) : bytes_(bytes) {}
+
+  // None when the bytes end early, or the number is longer than any that is written.
+  std::optional<std::uint64_t> take(int order) {
+    const int zeros = std::countl_zero(next_bits());
+    if (zeros > kMostZeros) return std::nullopt;
+    at_ += static_cast<std::size_t>(zeros);
+    const int length = zeros + 1 + order;
+    const std::uint64_t shown = next_bits() >> (64 - length);
+    at_ += static_cast<std::size_t>(length);
+    if (at_ > 8 * bytes_.size()) return std::nullopt;
+    return shown - (std::uint64_t{1} << order);
+  }
+  // Nothing is left but what fills the last byte, and that is zeros.
+  [[nodiscard]] bool at_end() const { return (at_ + 7) / 8 == bytes_.size() && next_bits() == 0; }
+
+ private:
+  static constexpr int kMostZeros = 34;
+
+  // 56 or more, the first one highest; zeros beyond the end.
+  [[nodiscard]] std::uint64_t next_bits() const {
+    std::uint64_t bits = 0;
+    for (std::size_t i = at_ / 8; i < at_ / 8 + 8; ++i)
+      bits = bits << 8 | (i < bytes_.size() ? static_cast<unsigned char>(bytes_[i]) : 0U);
+    return bits << at_ % 8;
+  }
+
+  std::string_view bytes_;
+  std::size_t at_ = 0;  // bit
+};
 
 // The decoded window, or what is wrong.
 struct Decoded {
@@ -68,14 +113,20 @@ struct Decoded {
   const char* fault = nullptr;
 };
 
+// Of the differences.
+struct DepthCode {
+  int order = 0;
+  std::int64_t most_steps = kMostSteps;
+};
+
 // Sets the cells of one run with data. What is wrong, or nullptr.
-const char* take_run(std::string_view& bytes, std::size_t begin, std::size_t end, std::int64_t most, std::int64_t& last,
+const char* take_run(BitReader& bits, std::size_t begin, std::size_t end, const DepthCode& code, std::int64_t& last,
                      Window& window) {
   for (std::size_t cell = begin; cell < end; ++cell) {
-    const std::optional<std::uint64_t> difference = take_varint(bytes);
+    const std::optional<std::uint64_t> difference = bits.take(code.order);
     if (!difference) return "its depths end early";
     last = window.promised(cell, last) + from_zigzag(*difference);
-    if (last < 1 || last > most) return "it has a depth that is not between 0 and a kilometre";
+    if (last < 1 || last > code.most_steps) return "it has a depth that is not between 0 and a kilometre";
     window.steps[cell] = static_cast<std::int32_t>(last);
   }
   return nullptr;
@@ -84,22 +135,26 @@ const char* take_run(std::string_view& bytes, std::size_t begin, std::size_t end
 // REQUIRES: window and depth step within their limits.
 Decoded decode_depths(const GoldenScan& scan) {
   const auto cells = static_cast<std::size_t>(scan.rows) * static_cast<std::size_t>(scan.columns);
-  const auto most = static_cast<std::int64_t>(std::min(static_cast<double>(kMostSteps), kFarthest / scan.depth_step));
+  if (scan.depths.empty()) return {{}, "its depths end early"};
+  const DepthCode code{
+      static_cast<unsigned char>(scan.depths.front()),
+      static_cast<std::int64_t>(std::min(static_cast<double>(kMostSteps), kFarthest / scan.depth_step))};
+  if (code.order > kHighestOrder) return {{}, "its depths are in an unknown code"};
   Decoded decoded{{scan.columns, std::vector<std::int32_t>(cells, 0)}};
-  std::string_view bytes = scan.depths;
+  BitReader bits(std::string_view(scan.depths).substr(1));
   std::int64_t last = 0;
   for (std::size_t cell = 0; cell < cells;) {
-    const std::optional<std::uint64_t> without = take_varint(bytes);
-    const std::optional<std::uint64_t> with = without ? take_varint(bytes) : std::nullopt;
+    const std::optional<std::uint64_t> without = bits.take(kRunOrder);
+    const std::optional<std::uint64_t> with = without ? bits.take(kRunOrder) : std::nullopt;
     if (!with) return {{}, "its depths end early"};
     // An empty run would be another way to write the same.
     if (*without > cells - cell || *with > cells - cell - *without || *without + *with == 0)
       return {{}, "its runs do not fill its window"};
     const std::size_t begin = cell + *without;
     cell = begin + *with;
-    if (const char* fault = take_run(bytes, begin, cell, most, last, decoded.window)) return {{}, fault};
+    if (const char* fault = take_run(bits, begin, cell, code, last, decoded.window)) return {{}, fault};
   }
-  if (!bytes.empty()) return {{}, "bytes follow after its depths"};
+  if (!bits.at_end()) return {{}, "bytes follow after its depths"};
   if (last == 0) return {{}, "it has no data"};
   return decoded;
 }
@@ -136,21 +191,48 @@ Window window_of(const RangeImage& image, const GoldenScan& scan) {
   return window;
 }
 
-std::string encode_depths(const Window& window) {
-  std::string bytes;
+// A run of cells without data and one of cells with them.
+struct Run {
+  std::size_t without = 0;
+  std::vector<std::uint64_t> differences;  // one for each cell with data
+};
+
+std::vector<Run> runs_of(const Window& window) {
+  std::vector<Run> runs;
   std::int64_t last = 0;
   const std::vector<std::int32_t>& steps = window.steps;
   for (std::size_t cell = 0; cell < steps.size();) {
-    const auto begin = steps.begin() + static_cast<std::ptrdiff_t>(cell);
-    const auto data = std::find_if(begin, steps.end(), [](std::int32_t depth) { return depth > 0; });
-    const auto end = std::find(data, steps.end(), 0);
-    append_varint(bytes, static_cast<std::uint64_t>(data - begin));
-    append_varint(bytes, static_cast<std::uint64_t>(end - data));
-    for (cell = static_cast<std::size_t>(data - steps.begin()); cell < static_cast<std::size_t>(end - steps.begin());
-         ++cell) {
-      append_varint(bytes, zigzag(steps[cell] - window.promised(cell, last)));
+    Run& run = runs.emplace_back();
+    for (; cell < steps.size() && steps[cell] == 0; ++cell) ++run.without;
+    for (; cell < steps.size() && steps[cell] > 0; ++cell) {
+      run.differences.push_back(zigzag(steps[cell] - window.promised(cell, last)));
       last = steps[cell];
     }
+  }
+  return runs;
+}
+
+// The one with the shortest code.
+int best_order(const std::vector<Run>& runs) {
+  std::array<std::size_t, kHighestOrder + 1> bits{};
+  for (const Run& run : runs) {
+    for (const std::uint64_t difference : run.differences) {
+      for (int order = 0; order <= kHighestOrder; ++order)
+        bits[static_cast<std::size_t>(order)] += static_cast<std::size_t>(code_length(difference, order));
+    }
+  }
+  return static_cast<int>(std::min_element(bits.begin(), bits.end()) - bits.begin());
+}
+
+std::string encode_depths(const Window& window) {
+  const std::vector<Run> runs = runs_of(window);
+  const int order = best_order(runs);
+  std::string bytes(1, static_cast<char>(order));
+  BitWriter bits(bytes);
+  for (const Run& run : runs) {
+    bits.put(run.without, kRunOrder);
+    bits.put(run.differences.size(), kRunOrder);
+    for (const std::uint64_t difference : run.differences) bits.put(difference, order);
   }
   return bytes;
 }

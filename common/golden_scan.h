@@ -16,9 +16,11 @@ namespace foresight {
 //
 // depths: the cells of the window, row by row, as runs: how many cells without data, how many with data, and for each
 // of these by how many steps its depth exceeds what its neighbours promise; then the next run, until the window is
-// full. All as varints of Protocol Buffers, the differences in zigzag. Promised is the plane through the cells before,
-// above, and above that one (before + above - above that); where these have not all data, the line through the two
-// cells before, else the cell before, else the one above, else the last cell with data, and 0 for the first.
+// full. Promised is the plane through the cells before, above, and above that one (before + above - above that); where
+// these have not all data, the line through the two cells before, else the cell before, else the one above, else the
+// last cell with data, and 0 for the first. As exponential Golomb codes, bit by bit from each byte's highest; zeros
+// fill the last byte. Counts of cells are of order 5; the first byte is the order of the differences, 0 to 15, which
+// come in zigzag (0, -1, 1, -2, 2 ...).
 struct GoldenScan {
   int first_row = 0;  // of the window, in the image
   int first_column = 0;

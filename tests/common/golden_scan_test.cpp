@@ -86,10 +86,10 @@ TEST(GoldenScan, holds_no_more_than_the_window_with_data) {
   EXPECT_EQ(fault_here(encoded(one)), nullptr);
 }
 
-TEST(GoldenScan, takes_about_a_byte_for_a_cell_of_a_plane) {
-  for (const double noise : {0.0, 0.4}) {  // four steps
+TEST(GoldenScan, takes_few_bits_for_a_cell_of_a_plane) {
+  for (const auto& [noise, bits] : {std::pair(0.0, 3.0), std::pair(0.4, 7.0)}) {  // four steps
     const RangeImage image = two_planes(noise);
-    EXPECT_LT(encoded(image).depths.size(), 1.2 * count_valid(image)) << noise;
+    EXPECT_LT(8.0 * static_cast<double>(encoded(image).depths.size()), bits * count_valid(image)) << noise;
   }
 }
 
@@ -137,19 +137,32 @@ TEST(GoldenScan, refuses_bytes_that_are_no_scan) {
     const char* fault = fault_of(scan, small_camera());
     return std::string(fault == nullptr ? "" : fault);
   };
-  const std::string ten = "\x14";  // in zigzag
-  const std::string none(1, '\0');
-  EXPECT_EQ(fault_of_bytes(none + "\x04" + ten + none + none + none), "");
-  EXPECT_EQ(fault_of_bytes("\x04" + none), "it has no data");
-  EXPECT_EQ(fault_of_bytes("\x05" + none), "its runs do not fill its window");
-  EXPECT_EQ(fault_of_bytes(none + "\x05"), "its runs do not fill its window");
-  EXPECT_EQ(fault_of_bytes(none + none), "its runs do not fill its window");
-  const std::string huge = "\xFF\xFF\xFF\xFF\x7F";
-  EXPECT_EQ(fault_of_bytes(huge + none), "its runs do not fill its window");
-  EXPECT_EQ(fault_of_bytes(none + huge), "its runs do not fill its window");
-  EXPECT_EQ(fault_of_bytes(none + "\xFF\xFF\xFF\xFF\xFF\x01"), "its depths end early");  // longer than any number here
-  for (const std::string& depth : {none, std::string("\x13"), huge})                     // 0, -10, and far beyond
-    EXPECT_EQ(fault_of_bytes(none + "\x04" + depth), "it has a depth that is not between 0 and a kilometre");
+  // Bits to bytes; of order 5 for counts, 100000 is 0 and 100100 is 4. The first byte: the order of differences.
+  const auto coded = [](const std::string& bits, int order = 0) {
+    std::string bytes(1, static_cast<char>(order));
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      if (i % 8 == 0) bytes += '\0';
+      if (bits[i] == '1') bytes.back() = static_cast<char>(bytes.back() | 0x80 >> i % 8);
+    }
+    return bytes;
+  };
+  const std::string none = "100000", four = "100100", five = "100101";
+  const std::string ten = "000010101", same = "1", lower = "010";  // 20, 0 and 1 in zigzag
+  EXPECT_EQ(fault_of_bytes(coded(none + four + ten + lower + same + same)), "");
+  EXPECT_EQ(fault_of_bytes(coded(four + none)), "it has no data");
+  EXPECT_EQ(fault_of_bytes(coded(five + none)), "its runs do not fill its window");
+  EXPECT_EQ(fault_of_bytes(coded(none + five)), "its runs do not fill its window");
+  EXPECT_EQ(fault_of_bytes(coded(none + none)), "its runs do not fill its window");
+  const std::string huge = std::string(33, '0') + std::string(40, '1');
+  EXPECT_EQ(fault_of_bytes(coded(huge + none)), "its runs do not fill its window");
+  EXPECT_EQ(fault_of_bytes(coded(none + huge)), "its runs do not fill its window");
+  EXPECT_EQ(fault_of_bytes(coded(none + four + ten + std::string(90, '0'))), "its depths end early");
+  EXPECT_EQ(fault_of_bytes(coded(none + four + ten + same)), "its depths end early");
+  EXPECT_EQ(fault_of_bytes(coded(none + four + ten + lower + same + same) + '\0'), "bytes follow after its depths");
+  EXPECT_EQ(fault_of_bytes(coded(none + four + ten + lower + same + same + "1")), "bytes follow after its depths");
+  EXPECT_EQ(fault_of_bytes(coded(four, 16)), "its depths are in an unknown code");
+  for (const std::string& depth : {same, lower, huge})  // 0, -1, and far beyond
+    EXPECT_EQ(fault_of_bytes(coded(none + four + depth)), "it has a depth that is not between 0 and a kilometre");
 }
 
 TEST(GoldenScan, refuses_windows_and_steps_outside_their_limits) {

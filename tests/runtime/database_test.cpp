@@ -365,7 +365,9 @@ TEST(DecodeDatabase, refuses_bad_golden_scans) {
   expect_bad("the golden scan cannot be used: its depths end early", [](GoldenScan& g) { g.rows = 3; });
   expect_bad("the golden scan cannot be used: its depths end early", [](GoldenScan& g) { g.depths.clear(); });
   expect_bad("the golden scan cannot be used: bytes follow", [](GoldenScan& g) { g.depths += 'x'; });
-  expect_bad("the golden scan cannot be used: it has a depth", [](GoldenScan& g) { g.depths[2] = 19; });
+  expect_bad("the golden scan cannot be used: it has a depth", [](GoldenScan& g) { g.depths[3] = '\x67'; });  // -11
+  expect_bad("the golden scan cannot be used: its depths are in an unknown code",
+             [](GoldenScan& g) { g.depths[0] = 16; });
 }
 
 TEST(DecodeDatabase, refuses_rotations_of_golden_scans_that_are_not_3_by_3) {
