@@ -29,29 +29,6 @@ struct Nearest {
   }
 };
 
-void judge(const RecognitionResult& recognized, const CompiledModel& model, ObjectSelftest& result) {
-  const ScoredObject object = scored_object(model);
-  const Pose& truth = model.golden_scan->T_sensor_model;
-  Nearest reported, alternative;
-  for (const Detection& detection : recognized.detections) {
-    reported.look_at(detection.T_sensor_model, detection.score, object, truth);
-    for (const Alternative& other : detection.ambiguous_with) {
-      alternative.look_at(other.T_sensor_model, other.score, object, truth);
-    }
-  }
-  const bool declared = reported.distance > object.tolerance() && alternative.distance <= object.tolerance();
-  const Nearest& nearest = declared ? alternative : reported;
-  result.verdict = recognized.detections.empty()            ? SelftestVerdict::not_found
-                   : declared                               ? SelftestVerdict::ambiguous
-                   : reported.distance > object.tolerance() ? SelftestVerdict::wrong
-                                                            : SelftestVerdict::right;
-  if (recognized.detections.empty()) return;
-  const Pose equal = nearest_equal(object, nearest.T_sensor_model, truth);
-  result.position_error = (nearest.T_sensor_model * model.centre - equal * model.centre).norm();
-  result.angle_error = rotation_angle(nearest.T_sensor_model.rotation * equal.rotation.transpose());
-  result.score = nearest.score;
-}
-
 const char* words_of(SelftestVerdict verdict) {
   switch (verdict) {
     case SelftestVerdict::right:
@@ -74,19 +51,41 @@ bool is_failure(SelftestVerdict verdict) {
   return verdict == SelftestVerdict::wrong || verdict == SelftestVerdict::not_found;
 }
 
-ObjectSelftest selftest_object(const CompiledModel& model, const CompiledDatabase& settings) {
+ObjectSelftest judge_golden_scan(const RecognitionResult& recognized, const CompiledModel& model) {
   ObjectSelftest result;
   result.object = model.name;
+  result.milliseconds = recognized.milliseconds.total;
+  const ScoredObject object = scored_object(model);
+  const Pose& truth = model.golden_scan->T_sensor_model;
+  Nearest reported, alternative;
+  for (const Detection& detection : recognized.detections) {
+    reported.look_at(detection.T_sensor_model, detection.score, object, truth);
+    for (const Alternative& other : detection.ambiguous_with) {
+      alternative.look_at(other.T_sensor_model, other.score, object, truth);
+    }
+  }
+  const bool declared = reported.distance > object.tolerance() && alternative.distance <= object.tolerance();
+  const Nearest& nearest = declared ? alternative : reported;
+  result.verdict = recognized.detections.empty()            ? SelftestVerdict::not_found
+                   : declared                               ? SelftestVerdict::ambiguous
+                   : reported.distance > object.tolerance() ? SelftestVerdict::wrong
+                                                            : SelftestVerdict::right;
+  if (recognized.detections.empty()) return result;
+  const Pose equal = nearest_equal(object, nearest.T_sensor_model, truth);
+  result.position_error = (nearest.T_sensor_model * model.centre - equal * model.centre).norm();
+  result.angle_error = rotation_angle(nearest.T_sensor_model.rotation * equal.rotation.transpose());
+  result.score = nearest.score;
+  return result;
+}
+
+ObjectSelftest selftest_object(const CompiledModel& model, const CompiledDatabase& settings) {
   // The compiler leaves no golden scan in a model that lacks what the two-way method needs.
-  if (!model.golden_scan || model.acceptance.samples == 0 || model.triangle_faces.empty()) return result;
+  if (!model.golden_scan || model.acceptance.samples == 0 || model.triangle_faces.empty()) return {model.name};
   const PinholeCamera& camera = settings.sensor.camera;
   const RangeImage image = decode_golden_scan(*model.golden_scan, camera);
   const Database alone(
       {settings.tool_version, settings.ray_isa, settings.sensor, settings.segmentation, settings.density, {model}});
-  const RecognitionResult recognized = recognize(image, camera, alone, {});
-  result.milliseconds = recognized.milliseconds.total;
-  judge(recognized, model, result);
-  return result;
+  return judge_golden_scan(recognize(image, camera, alone, {}), model);
 }
 
 SelftestCounts count_verdicts(const std::vector<ObjectSelftest>& results) {

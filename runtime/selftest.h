@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/database.h"
+#include "runtime/foresight.h"
 
 namespace foresight {
 
@@ -31,6 +32,9 @@ struct ObjectSelftest {
   double score = 0.0;           // of that pose
   double milliseconds = 0.0;    // of recognition
 };
+
+// What recognition in the golden scan came to. REQUIRES: the model has one, and all detections are of the model.
+[[nodiscard]] ObjectSelftest judge_golden_scan(const RecognitionResult& recognized, const CompiledModel& model);
 
 // One object. settings: of the database; its models play no part.
 [[nodiscard]] ObjectSelftest selftest_object(const CompiledModel& model, const CompiledDatabase& settings);
