@@ -1,7 +1,7 @@
 // Right or wrong? Reported poses against true ones, by the largest surface distance that the object's symmetries leave.
 //
-// Right pose: the true object, within its tolerance (runtime/pose_distance.h) of the true pose or of one of those listed
-// as equally good.
+// Right pose: the true object, within its tolerance (runtime/pose_distance.h) of the true pose or of one of those
+// listed as equally good.
 #pragma once
 
 #include <functional>

@@ -218,7 +218,8 @@ void check_golden_scan(const PinholeCamera& camera, const Place& place) {
   const GoldenScan& scan = *place.model.golden_scan;
   require(is_rotation(scan.T_sensor_model.rotation), place, "the golden scan has no proper rotation");
   require(is_position(scan.T_sensor_model.translation), place, "the translation of the golden scan is not finite");
-  if (const char* fault = fault_of(scan, camera)) refuse(place, std::string("the golden scan cannot be used: ") + fault);
+  if (const char* fault = fault_of(scan, camera))
+    refuse(place, std::string("the golden scan cannot be used: ") + fault);
 }
 
 void check_settings(const CompiledDatabase& database, const std::string& file) {

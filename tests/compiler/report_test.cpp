@@ -80,7 +80,9 @@ TEST(ReportText, names_every_object_and_the_sensor_a_line_each) {
   for (const CompiledModel& model : database.models) {
     EXPECT_NE(text.find("object " + model.name + ": 4 faces (3 found by extraction), 3 pairs"), std::string::npos)
         << text;
-    EXPECT_NE(text.find("template points, 1 exact and 1 near symmetries, golden scan of 7 bytes, diameter"), std::string::npos) << text;
+    EXPECT_NE(text.find("template points, 1 exact and 1 near symmetries, golden scan of 7 bytes, diameter"),
+              std::string::npos)
+        << text;
     EXPECT_NE(text.find(model.cad_file), std::string::npos);
   }
   EXPECT_NE(text.find("sensor " + database.sensor.name), std::string::npos);

@@ -350,7 +350,8 @@ TEST(DecodeDatabase, refuses_bad_golden_scans) {
     expect_model_inconsistent(words, [&](CompiledModel& m) { change(*m.golden_scan); });
   };
   for (const double value : {kNan, kInfinity, -kInfinity}) {
-    expect_bad("the golden scan has no proper rotation", [&](GoldenScan& g) { g.T_sensor_model.rotation(0, 1) = value; });
+    expect_bad("the golden scan has no proper rotation",
+               [&](GoldenScan& g) { g.T_sensor_model.rotation(0, 1) = value; });
     expect_bad("the translation of the golden scan", [&](GoldenScan& g) { g.T_sensor_model.translation.z() = value; });
     expect_bad("the golden scan cannot be used: its depth step", [&](GoldenScan& g) { g.depth_step = value; });
   }
