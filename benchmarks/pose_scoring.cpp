@@ -72,23 +72,7 @@ Verdict verdict_alone(const std::vector<ScoredObject>& objects, const std::vecto
 
 }  // namespace
 
-double ScoredObject::tolerance() const { return std::max(kRightDistance, kRightShare * diameter); }
-
 ScoredObject scored_object(const CadModel& model) { return {model.vertices, find_symmetries(model), model.diameter()}; }
-
-double mssd(const ScoredObject& object, const Pose& reported, const Pose& truth) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Pose& symmetry : object.symmetries) {
-    const Pose symmetric = truth * symmetry;
-    double largest = 0.0;
-    for (const Eigen::Vector3d& vertex : object.vertices) {
-      largest = std::max(largest, (reported * vertex - symmetric * vertex).squaredNorm());
-      if (largest >= least) break;
-    }
-    least = std::min(least, largest);
-  }
-  return std::sqrt(least);
-}
 
 SceneVerdicts score_scene(const std::vector<ScoredObject>& objects, const std::vector<TrueObject>& truth,
                           const std::vector<ReportedObject>& reported, const CannotTell& cannot_tell) {

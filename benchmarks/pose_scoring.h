@@ -1,8 +1,7 @@
 // Right or wrong? Reported poses against true ones, by the largest surface distance that the object's symmetries leave.
 //
-// Right pose: the true object, with MSSD (BOP's maximum symmetry-aware surface distance: the largest distance of a
-// vertex between reported and true pose, minimised over the symmetries and the listed equally good poses) of at most 5
-// mm or 5 % of the object's diameter, whichever is larger.
+// Right pose: the true object, within its tolerance (runtime/pose_distance.h) of the true pose or of one of those
+// listed as equally good.
 #pragma once
 
 #include <functional>
@@ -11,25 +10,14 @@
 #include "common/pose.h"
 #include "compiler/cad_model.h"
 #include "compiler/symmetries.h"
+#include "runtime/pose_distance.h"
 
 namespace foresight {
 
-inline constexpr double kRightDistance = 5.0;  // Unit: mm.
-inline constexpr double kRightShare = 0.05;    // of the diameter
-inline constexpr double kPresentShare = 0.5;   // of the diameter: farther from every instance is a false positive
+inline constexpr double kPresentShare = 0.5;  // of the diameter: farther from every instance is a false positive
 
-// What scoring needs to know about an object.
-struct ScoredObject {
-  std::vector<Eigen::Vector3d> vertices;  // Unit: mm.
-  std::vector<Pose> symmetries;           // T_model_model, the identity first
-  double diameter = 0.0;                  // Unit: mm.
-
-  [[nodiscard]] double tolerance() const;  // Unit: mm.
-};
+// With the symmetries that find_symmetries finds.
 [[nodiscard]] ScoredObject scored_object(const CadModel& model);
-
-// Unit: mm.
-[[nodiscard]] double mssd(const ScoredObject& object, const Pose& reported, const Pose& truth);
 
 struct TrueObject {
   int object = 0;           // index into the objects scored

@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/density.h"
+#include "common/golden_scan.h"
 #include "common/pose.h"
 #include "common/region_attributes.h"
 #include "common/relation_attributes.h"
@@ -101,6 +103,7 @@ struct CompiledModel {
   std::vector<Eigen::Vector3f> vertices;      // of the CAD mesh, for overlays and for pose distances. Unit: mm.
   std::vector<std::array<int, 3>> triangles;  // indices into vertices
   std::vector<int> triangle_faces;            // face of each triangle; empty in databases of earlier compilers
+  std::optional<GoldenScan> golden_scan;      // none where the compiler recognized none; none from earlier compilers
 };
 
 // A database is compiled models that share a sensor and extraction settings.

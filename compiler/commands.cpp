@@ -154,6 +154,11 @@ int run_compile(const CompileCommand& command) {
                        "check the unit, or describe a sensor that resolves the object's faces");
     }
   }
+  for (std::size_t i = 0; i < cads.size(); ++i) {
+    if (database.models[i].golden_scan) continue;
+    std::cerr << "foresightc: " << command.cad_files[i]
+              << ": warning: not recognized in any simulated view of it alone; without a golden scan, foresight selftest cannot test it\n";
+  }
   const std::string bytes = encode_database(database);
   if (!command.depfile.empty()) write_depfile(command);  // first, so that no database stands without it
   write_file_atomically(command.output, bytes);

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "common/errors.h"
+#include "compiler/golden_scan.h"
 #include "compiler/near_symmetries.h"
 #include "compiler/sensor_simulator.h"
 #include "compiler/statistics.h"
@@ -52,7 +53,9 @@ CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, cons
   surface.distance = sensor.working_distance();
   model.surface = build_surface_template(cad, surface);
   model.symmetries = list_symmetries(cad, sensor);
-  model.acceptance = train_acceptance(cad, model, new_database(sensor, options), options.acceptance);
+  const CompiledDatabase settings = new_database(sensor, options);
+  model.acceptance = train_acceptance(cad, model, settings, options.acceptance);
+  model.golden_scan = choose_golden_scan(cad, model, settings);
   return model;
 }
 

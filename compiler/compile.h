@@ -1,5 +1,6 @@
 // The compiler's order of stages: CAD -> views -> regions -> samples -> statistics, and the surface template and the
-// symmetries beside them.
+// symmetries beside them; then what the runtime learns of right and wrong poses, and a scan in which it recognizes the
+// object.
 #pragma once
 
 #include <functional>
@@ -21,7 +22,7 @@ struct CompileOptions {
   SurfaceTemplateOptions surface;    // its distance is overridden by the sensor's working distance
 };
 
-// Statistics, template and symmetries of one model. progress(done) counts views; may be called from any thread.
+// Statistics, template, symmetries, acceptance and golden scan of one model. progress(done) counts views; may be called from any thread.
 [[nodiscard]] CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, const CompileOptions& options,
                                           const std::function<void(int)>& progress = {});
 

@@ -114,13 +114,29 @@ void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
   message.set_samples(static_cast<std::uint32_t>(acceptance.samples));
 }
 
-void fill(v1::Symmetry& message, const Symmetry& symmetry) {
+// Messages that hold a pose have it in fields of these names.
+template <typename Message>
+void fill_pose(Message& message, const Pose& pose) {
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) message.add_rotation(symmetry.T_model_model.rotation(row, column));
+    for (int column = 0; column < 3; ++column) message.add_rotation(pose.rotation(row, column));
   }
-  fill(*message.mutable_translation(), symmetry.T_model_model.translation);
+  fill(*message.mutable_translation(), pose.translation);
+}
+
+void fill(v1::Symmetry& message, const Symmetry& symmetry) {
+  fill_pose(message, symmetry.T_model_model);
   message.set_exact(symmetry.exact);
   message.set_overlap(symmetry.overlap);
+}
+
+void fill(v1::GoldenScan& message, const GoldenScan& scan) {
+  message.set_first_row(static_cast<std::uint32_t>(scan.first_row));
+  message.set_first_column(static_cast<std::uint32_t>(scan.first_column));
+  message.set_rows(static_cast<std::uint32_t>(scan.rows));
+  message.set_columns(static_cast<std::uint32_t>(scan.columns));
+  message.set_depth_step(scan.depth_step);
+  message.set_depths(scan.depths);
+  fill_pose(message, scan.T_sensor_model);
 }
 
 void fill(v1::Model& message, const CompiledModel& model) {
@@ -140,6 +156,7 @@ void fill(v1::Model& message, const CompiledModel& model) {
     for (const int vertex : triangle) message.add_triangles(static_cast<std::uint32_t>(vertex));
   for (const int face : model.triangle_faces) message.add_triangle_faces(static_cast<std::uint32_t>(face));
   if (model.acceptance.samples > 0) fill(*message.mutable_acceptance(), model.acceptance);
+  if (model.golden_scan) fill(*message.mutable_golden_scan(), *model.golden_scan);
 }
 
 // Protocol Buffers promise the same bytes for the same message from one build of the library as long as no map is in

@@ -24,6 +24,14 @@ std::ptrdiff_t near_symmetries(const CompiledModel& model) {
   return static_cast<std::ptrdiff_t>(model.symmetries.size()) - exact_symmetries(model);
 }
 
+std::size_t golden_scan_bytes(const CompiledModel& model) {
+  return model.golden_scan ? model.golden_scan->depths.size() : 0;
+}
+
+std::string golden_scan_text(const CompiledModel& model) {
+  return model.golden_scan ? "golden scan of " + std::to_string(golden_scan_bytes(model)) + " bytes" : "no golden scan";
+}
+
 Json sensor_json(const SensorModel& sensor) {
   const PinholeCamera& camera = sensor.camera;
   Json json = {{"name", sensor.name},
@@ -57,7 +65,8 @@ Json model_json(const CompiledModel& model) {
           {"template_spacing_mm", model.surface.spacing},
           {"exact_symmetries", exact_symmetries(model)},
           {"near_symmetries", near_symmetries(model)},
-          {"faces", faces}};
+          {"faces", faces},
+          {"golden_scan_bytes", golden_scan_bytes(model)}};
 }
 
 }  // namespace
@@ -76,7 +85,7 @@ std::string report_text(const CompiledDatabase& database, std::size_t bytes) {
     out << "object " << model.name << ": " << model.faces.size() << " faces (" << faces_found(model)
         << " found by extraction), " << model.pairs.size() << " pairs seen together, " << model.surface.points.size()
         << " template points, " << exact_symmetries(model) << " exact and " << near_symmetries(model)
-        << " near symmetries, diameter " << model.diameter << " mm, " << model.views << " views, from "
+        << " near symmetries, " << golden_scan_text(model) << ", diameter " << model.diameter << " mm, " << model.views << " views, from "
         << model.cad_file << "\n";
   }
   return out.str();

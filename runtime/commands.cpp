@@ -13,6 +13,7 @@
 #include "runtime/pose_file.h"
 #include "runtime/recognize.h"
 #include "runtime/result_writer.h"
+#include "runtime/selftest_writer.h"
 
 namespace foresight {
 namespace {
@@ -186,6 +187,24 @@ int run_segment(const SegmentCommand& command) {
   }
   std::cout << command.scan << ": " << regions.size() << " regions\n";
   return regions.empty() ? kExitNothingFound : kExitDone;
+}
+
+int run_selftest(const SelftestCommand& command) {
+  const Database database = load_database(command.database);
+  const CompiledDatabase& content = database.content();
+  const bool as_text = command.format == "text";
+  std::vector<ObjectSelftest> results;
+  for (const CompiledModel& model : database.models()) {
+    results.push_back(selftest_object(model, content));
+    if (as_text) std::cout << selftest_line(results.back()) << std::flush;  // it takes a while with many objects
+  }
+  const SelftestCounts counts = count_verdicts(results);
+  if (as_text) {
+    std::cout << selftest_summary(counts, content.tool_version);
+  } else {
+    std::cout << selftest_json(command.database, content.tool_version, results) << "\n";
+  }
+  return counts.all_right() ? kExitDone : kExitNothingFound;
 }
 
 }  // namespace foresight

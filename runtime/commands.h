@@ -41,9 +41,15 @@ struct SegmentCommand {
   ScanSource source;
 };
 
+struct SelftestCommand {
+  std::string database;
+  std::string format = "text";
+};
+
 // Each prints to stdout, returns the exit code and throws what common/errors.h lists.
 int run_recognize(const RecognizeCommand& command);
 int run_localize(const LocalizeCommand& command);
 int run_segment(const SegmentCommand& command);
+int run_selftest(const SelftestCommand& command);
 
 }  // namespace foresight

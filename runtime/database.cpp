@@ -162,14 +162,35 @@ AcceptanceModel from_message(const v1::AcceptanceModel& message) {
   return acceptance;
 }
 
+// Of a message with rotation and translation. REQUIRES: nine numbers in the rotation.
+template <typename Message>
+Pose pose_in(const Message& message) {
+  Pose pose;
+  for (int i = 0; i < 9; ++i) pose.rotation(i / 3, i % 3) = message.rotation(i);
+  pose.translation = from_message(message.translation());
+  return pose;
+}
+
 // REQUIRES: nine numbers in the rotation.
 Symmetry from_message(const v1::Symmetry& message) {
   Symmetry symmetry;
-  for (int i = 0; i < 9; ++i) symmetry.T_model_model.rotation(i / 3, i % 3) = message.rotation(i);
-  symmetry.T_model_model.translation = from_message(message.translation());
+  symmetry.T_model_model = pose_in(message);
   symmetry.exact = message.exact();
   symmetry.overlap = message.overlap();
   return symmetry;
+}
+
+// REQUIRES: nine numbers in the rotation.
+GoldenScan from_message(const v1::GoldenScan& message) {
+  GoldenScan scan;
+  scan.first_row = to_int(message.first_row());
+  scan.first_column = to_int(message.first_column());
+  scan.rows = to_int(message.rows());
+  scan.columns = to_int(message.columns());
+  scan.depth_step = message.depth_step();
+  scan.depths = message.depths();
+  scan.T_sensor_model = pose_in(message);
+  return scan;
 }
 
 CompiledModel from_message(const v1::Model& message, const std::string& file) {
@@ -204,6 +225,11 @@ CompiledModel from_message(const v1::Model& message, const std::string& file) {
     if (symmetry.rotation_size() != 9)
       refuse_inconsistent(file, "model '" + model.name + "': the rotation of a symmetry has not nine numbers");
     model.symmetries.push_back(from_message(symmetry));
+  }
+  if (message.has_golden_scan()) {
+    if (message.golden_scan().rotation_size() != 9)
+      refuse_inconsistent(file, "model '" + model.name + "': the rotation of the golden scan has not nine numbers");
+    model.golden_scan = from_message(message.golden_scan());
   }
   return model;
 }

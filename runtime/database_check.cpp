@@ -213,6 +213,15 @@ void check_symmetries(const Place& place) {
   }
 }
 
+void check_golden_scan(const PinholeCamera& camera, const Place& place) {
+  if (!place.model.golden_scan) return;
+  const GoldenScan& scan = *place.model.golden_scan;
+  require(is_rotation(scan.T_sensor_model.rotation), place, "the golden scan has no proper rotation");
+  require(is_position(scan.T_sensor_model.translation), place, "the translation of the golden scan is not finite");
+  if (const char* fault = fault_of(scan, camera))
+    refuse(place, std::string("the golden scan cannot be used: ") + fault);
+}
+
 void check_settings(const CompiledDatabase& database, const std::string& file) {
   try {
     check(database.sensor, file);
@@ -248,6 +257,7 @@ void check(const CompiledDatabase& database, const std::string& file) {
     check_mesh(place);
     check_acceptance(place);
     check_symmetries(place);
+    check_golden_scan(database.sensor.camera, place);
   }
 }
 

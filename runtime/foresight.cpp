@@ -7,6 +7,7 @@
 #include "common/errors.h"
 #include "runtime/database.h"
 #include "runtime/recognize.h"
+#include "runtime/selftest.h"
 
 namespace foresight {
 namespace {
@@ -89,6 +90,21 @@ std::vector<std::string> Recognizer::object_names() const {
 }
 
 const Database& Recognizer::database() const { return *impl_->database; }
+
+SelftestReport selftest(const Database& database) {
+  SelftestReport report;
+  std::vector<ObjectSelftest> results;
+  for (const CompiledModel& model : database.models()) {
+    results.push_back(selftest_object(model, database.content()));
+    report.text += selftest_line(results.back());
+  }
+  const SelftestCounts counts = count_verdicts(results);
+  report.all_right = counts.all_right();
+  report.failed = counts.failed;
+  report.untested = counts.untested;
+  report.text += selftest_summary(counts, database.content().tool_version);
+  return report;
+}
 
 const char* version() { return FORESIGHT_VERSION; }
 

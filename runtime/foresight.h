@@ -162,6 +162,18 @@ class Recognizer {
   std::unique_ptr<Impl> impl_;
 };
 
+// What a selftest came to.
+struct SelftestReport {
+  bool all_right = false;  // at least one object was tested, and none failed
+  int failed = 0;          // objects not recognized, or at wrong poses only
+  int untested = 0;        // objects without a golden scan, as of databases of earlier compilers
+  std::string text;        // for eyes: a line for each object, and a last one of all
+};
+
+// Whether this program on this machine still recognizes each object of the database in its golden scan: the simulated
+// scan in which the compiler recognized it. Takes as long as a scan for each object.
+[[nodiscard]] SelftestReport selftest(const Database& database);
+
 // "0.1.0"
 [[nodiscard]] const char* version();
 

@@ -200,6 +200,18 @@ foresight_status foresight_database_object(const foresight_database* database, s
   });
 }
 
+foresight_status foresight_database_selftest(const foresight_database* database, std::uint32_t* failed, char* text,
+                                             std::uint64_t capacity) {
+  return guarded([&]() -> foresight_status {
+    require(database, "database");
+    if (capacity > 0) require(text, "text");
+    const foresight::SelftestReport report = foresight::selftest(*database->content);
+    if (failed != nullptr) *failed = static_cast<std::uint32_t>(report.failed);
+    if (capacity > 0) text[report.text.copy(text, capacity - 1)] = '\0';
+    return report.all_right ? FORESIGHT_DONE : FORESIGHT_NOTHING_FOUND;
+  });
+}
+
 foresight_status foresight_recognizer_create(const foresight_database* database, const foresight_options* options,
                                              foresight_recognizer** recognizer) {
   return guarded([&] {

@@ -42,7 +42,7 @@ extern "C" {
 /* The exit codes of the programs. The first three leave a result, the others none. */
 typedef int32_t foresight_status;
 #define FORESIGHT_DONE 0          /* done; of foresight_recognize: something recognized */
-#define FORESIGHT_NOTHING_FOUND 1 /* ran well, nothing recognized */
+#define FORESIGHT_NOTHING_FOUND 1 /* ran well, nothing recognized (or a selftest fell short) */
 #define FORESIGHT_DEADLINE 5      /* deadline reached; the result holds what was found until then */
 #define FORESIGHT_USAGE 2     /* a handle or struct that cannot be, an option outside its limits, an index too large */
 #define FORESIGHT_BAD_INPUT 3 /* a file or range image that cannot be used */
@@ -80,6 +80,14 @@ typedef struct foresight_object {
 FORESIGHT_API uint32_t foresight_database_object_count(const foresight_database* database);
 FORESIGHT_API foresight_status foresight_database_object(const foresight_database* database, uint32_t index,
                                                          foresight_object* object);
+
+/* Whether this library on this machine still recognizes each object of the database in its golden scan: the simulated
+ * scan in which the compiler recognized it. FORESIGHT_DONE when no object fails and at least one was tested, else
+ * FORESIGHT_NOTHING_FOUND. Takes as long as a scan for each object.
+ * failed: how many objects fail; NULL is taken. text: a line for each object and a last one of all, cut to capacity - 1
+ * bytes and ended with 0; NULL is taken with capacity 0. */
+FORESIGHT_API foresight_status foresight_database_selftest(const foresight_database* database, uint32_t* failed,
+                                                           char* text, uint64_t capacity);
 
 /* Options of a recognizer; foresight.h says more. */
 #define FORESIGHT_METHOD_TWO_WAY 0

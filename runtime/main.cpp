@@ -100,6 +100,16 @@ CLI::App* add_segment(CLI::App& app, SegmentCommand& c) {
   return command;
 }
 
+CLI::App* add_selftest(CLI::App& app, SelftestCommand& c) {
+  CLI::App* command = app.add_subcommand(
+      "selftest", "Recognize each object of a database in the scan that the compiler recognized it in");
+  command->add_option("DB", c.database, "Database made by foresightc")->required();
+  command->add_option("--format", c.format, "text or json")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  return command;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Recognizes and localizes known rigid objects in range images.", "foresight");
   app.set_version_flag("--version", std::string("foresight ") + version());
@@ -107,13 +117,16 @@ int run(int argc, char** argv) {
   RecognizeCommand recognize;
   LocalizeCommand localize;
   SegmentCommand segment;
+  SelftestCommand selftest;
   const CLI::App* recognize_app = add_recognize(app, recognize);
   const CLI::App* localize_app = add_localize(app, localize);
-  add_segment(app, segment);
+  const CLI::App* segment_app = add_segment(app, segment);
+  add_selftest(app, selftest);
   return run_program("foresight", app, argc, argv, [&] {
     if (recognize_app->parsed()) return run_recognize(recognize);
     if (localize_app->parsed()) return run_localize(localize);
-    return run_segment(segment);
+    if (segment_app->parsed()) return run_segment(segment);
+    return run_selftest(selftest);
   });
 }
 

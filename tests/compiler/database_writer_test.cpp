@@ -32,6 +32,17 @@ void expect_same(const SurfaceTemplate& a, const SurfaceTemplate& b) {
   EXPECT_EQ(a.aspects, b.aspects);
 }
 
+void expect_same(const GoldenScan& a, const GoldenScan& b) {
+  EXPECT_EQ(a.first_row, b.first_row);
+  EXPECT_EQ(a.first_column, b.first_column);
+  EXPECT_EQ(a.rows, b.rows);
+  EXPECT_EQ(a.columns, b.columns);
+  EXPECT_EQ(a.depth_step, b.depth_step);
+  EXPECT_EQ(a.depths, b.depths);
+  EXPECT_EQ(a.T_sensor_model.rotation, b.T_sensor_model.rotation);
+  EXPECT_EQ(a.T_sensor_model.translation, b.T_sensor_model.translation);
+}
+
 void expect_same(const CompiledModel& a, const CompiledModel& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.cad_file, b.cad_file);
@@ -72,6 +83,8 @@ void expect_same(const CompiledModel& a, const CompiledModel& b) {
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.triangle_faces, b.triangle_faces);
+  ASSERT_EQ(a.golden_scan.has_value(), b.golden_scan.has_value());
+  if (a.golden_scan) expect_same(*a.golden_scan, *b.golden_scan);
 }
 
 TEST(DatabaseWriter, what_is_written_is_read_field_by_field) {
@@ -115,6 +128,14 @@ TEST(DatabaseWriter, a_model_without_faces_of_triangles_stays_without) {
   const CompiledDatabase read = decode_database(encode_database(database), "x.db");
   EXPECT_TRUE(read.models[0].triangle_faces.empty());
   EXPECT_EQ(read.models[1].triangle_faces, database.models[1].triangle_faces);
+}
+
+TEST(DatabaseWriter, a_model_without_golden_scan_stays_without) {
+  CompiledDatabase database = test::synthetic_database();
+  database.models[0].golden_scan.reset();
+  const CompiledDatabase read = decode_database(encode_database(database), "x.db");
+  EXPECT_FALSE(read.models[0].golden_scan);
+  EXPECT_TRUE(read.models[1].golden_scan);
 }
 
 TEST(DatabaseWriter, same_content_gives_the_same_bytes) {

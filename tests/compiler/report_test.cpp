@@ -31,6 +31,7 @@ TEST(ReportJson, lists_every_object_with_its_faces_in_order) {
     EXPECT_EQ(object["template_points"], model.surface.points.size());
     EXPECT_EQ(object["exact_symmetries"], 1);
     EXPECT_EQ(object["near_symmetries"], 1);
+    EXPECT_EQ(object["golden_scan_bytes"], model.golden_scan->depths.size());
     ASSERT_EQ(object["faces"].size(), model.faces.size());
     for (std::size_t f = 0; f < model.faces.size(); ++f) {
       EXPECT_EQ(object["faces"][f]["area_mm2"], model.faces[f].area);
@@ -60,6 +61,13 @@ TEST(ReportJson, names_no_projector_where_there_is_none) {
   EXPECT_FALSE(parsed(database)["sensor"].contains("projector_mm"));
 }
 
+TEST(Report, tells_which_objects_have_no_golden_scan) {
+  CompiledDatabase database = test::synthetic_database();
+  database.models[1].golden_scan.reset();
+  EXPECT_EQ(parsed(database)["objects"][1]["golden_scan_bytes"], 0);
+  EXPECT_NE(report_text(database, 1).find("no golden scan, diameter"), std::string::npos);
+}
+
 TEST(ReportJson, escapes_names) {
   CompiledDatabase database = test::synthetic_database();
   database.models[0].name = "a \"quoted\"\nname\\";
@@ -72,7 +80,9 @@ TEST(ReportText, names_every_object_and_the_sensor_a_line_each) {
   for (const CompiledModel& model : database.models) {
     EXPECT_NE(text.find("object " + model.name + ": 4 faces (3 found by extraction), 3 pairs"), std::string::npos)
         << text;
-    EXPECT_NE(text.find("template points, 1 exact and 1 near symmetries, diameter"), std::string::npos) << text;
+    EXPECT_NE(text.find("template points, 1 exact and 1 near symmetries, golden scan of 7 bytes, diameter"),
+              std::string::npos)
+        << text;
     EXPECT_NE(text.find(model.cad_file), std::string::npos);
   }
   EXPECT_NE(text.find("sensor " + database.sensor.name), std::string::npos);

@@ -12,7 +12,7 @@ namespace {
 using Arguments = std::vector<std::string>;
 
 const Arguments kCompilerCommands = {"compile", "link", "inspect", "simulate"};
-const Arguments kRuntimeCommands = {"recognize", "localize", "segment"};
+const Arguments kRuntimeCommands = {"recognize", "localize", "segment", "selftest"};
 
 void expect_help(const Outcome& outcome, const std::string& words) {
   expect_code(outcome, 0);
@@ -63,6 +63,8 @@ TEST(CommandLine, refuses_what_foresight_does_not_know) {
       {{"--bogus"}, ""},
       {{"bogus"}, ""},
       {{"recognize"}, "DB"},
+      {{"selftest"}, "DB"},
+      {{"selftest", db, "--format", "bop-csv"}, "bop-csv"},
       {{"recognize", db}, "SCAN"},
       {{"recognize", db, scan, "--bogus"}, "--bogus"},
       {{"recognize", db, scan, "--format"}, "--format"},

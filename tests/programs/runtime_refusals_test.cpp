@@ -40,6 +40,7 @@ void expect_database_refused(int code, const std::string& database, const std::s
   }
   expect_refused(foresight({"localize", database, scan, "--object", "stick", "--pose", true_pose()}), code, "foresight",
                  database, words);
+  expect_refused(foresight({"selftest", database}), code, "foresight", database, words);
   const std::string labels = workshop().file("labels.png");
   expect_refused(foresight({"segment", scan, "--database", database, "-o", labels}), code, "foresight", database,
                  words);

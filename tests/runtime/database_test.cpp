@@ -345,6 +345,46 @@ TEST(DecodeDatabase, takes_databases_of_compilers_that_knew_no_symmetries) {
   EXPECT_TRUE(decode_database(bytes, "x.db").models[0].symmetries.empty());
 }
 
+TEST(DecodeDatabase, refuses_bad_golden_scans) {
+  const auto expect_bad = [](const std::string& words, const std::function<void(GoldenScan&)>& change) {
+    expect_model_inconsistent(words, [&](CompiledModel& m) { change(*m.golden_scan); });
+  };
+  for (const double value : {kNan, kInfinity, -kInfinity}) {
+    expect_bad("the golden scan has no proper rotation",
+               [&](GoldenScan& g) { g.T_sensor_model.rotation(0, 1) = value; });
+    expect_bad("the translation of the golden scan", [&](GoldenScan& g) { g.T_sensor_model.translation.z() = value; });
+    expect_bad("the golden scan cannot be used: its depth step", [&](GoldenScan& g) { g.depth_step = value; });
+  }
+  expect_bad("the golden scan has no proper rotation", [](GoldenScan& g) { g.T_sensor_model.rotation *= -1.0; });
+  expect_bad("the golden scan cannot be used: its depth step", [](GoldenScan& g) { g.depth_step = 0.0; });
+  const std::string window = "the golden scan cannot be used: its window";
+  expect_bad(window, [](GoldenScan& g) { g.first_row = 127; });  // of 128 rows
+  expect_bad(window, [](GoldenScan& g) { g.first_column = 254; });
+  expect_bad(window, [](GoldenScan& g) { g.rows = 0; });
+  expect_bad(window, [](GoldenScan& g) { g.columns = -1; });
+  expect_bad("the golden scan cannot be used: its runs", [](GoldenScan& g) { g.columns = 2; });
+  expect_bad("the golden scan cannot be used: its depths end early", [](GoldenScan& g) { g.rows = 3; });
+  expect_bad("the golden scan cannot be used: its depths end early", [](GoldenScan& g) { g.depths.clear(); });
+  expect_bad("the golden scan cannot be used: bytes follow", [](GoldenScan& g) { g.depths += 'x'; });
+  expect_bad("the golden scan cannot be used: it has a depth", [](GoldenScan& g) { g.depths[3] = '\x67'; });  // -11
+  expect_bad("the golden scan cannot be used: its depths are in an unknown code",
+             [](GoldenScan& g) { g.depths[0] = 16; });
+}
+
+TEST(DecodeDatabase, refuses_rotations_of_golden_scans_that_are_not_3_by_3) {
+  for (const int numbers : {0, 8, 10}) {
+    const std::string bytes = with_messages(
+        [&](v1::Header&, v1::Model& m) { m.mutable_golden_scan()->mutable_rotation()->Resize(numbers, 0.0); });
+    EXPECT_EQ(error_of(bytes).fault(), DatabaseFault::inconsistent) << numbers;
+    EXPECT_NE(error_of(bytes).cause().find("nine"), std::string::npos);
+  }
+}
+
+TEST(DecodeDatabase, takes_databases_of_compilers_that_knew_no_golden_scans) {
+  const std::string bytes = with_messages([](v1::Header&, v1::Model& m) { m.clear_golden_scan(); });
+  EXPECT_FALSE(decode_database(bytes, "x.db").models[0].golden_scan);
+}
+
 // Of the second model, something the two-way method needs is taken away.
 void expect_refused_by_two_way_only(const std::function<void(CompiledModel&)>& take_away) {
   RecognizeOptions paper;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <fstream>
@@ -269,6 +270,43 @@ TEST(CInterface, refuses_null_and_indices_too_large) {
   foresight_database_release(nullptr);
   foresight_recognizer_release(nullptr);
   foresight_result_release(nullptr);
+}
+
+// The database of a client after a change.
+template <typename Change>
+DatabaseHandle loaded_with(const Change& change) {
+  CompiledDatabase content = compiled_objects().content();
+  change(content.models);
+  const std::string bytes = encode_database(content);
+  foresight_database* handle = nullptr;
+  EXPECT_EQ(foresight_database_load_bytes(bytes.data(), bytes.size(), &handle), FORESIGHT_DONE);
+  return DatabaseHandle(handle);
+}
+
+TEST(CInterface, tests_itself_as_the_cpp_interface_does) {
+  const auto database = loaded_with([](auto&) {});
+  std::array<char, 1000> text{};
+  std::uint32_t failed = 77;
+  EXPECT_EQ(foresight_database_selftest(database.get(), &failed, text.data(), text.size()), FORESIGHT_DONE);
+  EXPECT_EQ(failed, 0U);
+  EXPECT_NE(std::string(text.data()).find("passed: 2 right"), std::string::npos) << text.data();
+
+  const auto moved = loaded_with([](auto& models) { models[0].golden_scan->T_sensor_model.translation.x() += 60.0; });
+  EXPECT_EQ(foresight_database_selftest(moved.get(), &failed, nullptr, 0), FORESIGHT_NOTHING_FOUND);
+  EXPECT_EQ(failed, 1U);
+  const auto none = loaded_with([](auto& models) {
+    for (CompiledModel& model : models) model.golden_scan.reset();
+  });
+  EXPECT_EQ(foresight_database_selftest(none.get(), &failed, text.data(), text.size()), FORESIGHT_NOTHING_FOUND);
+  EXPECT_EQ(failed, 0U);
+  const std::string whole = text.data();
+
+  text.fill('x');  // a text too long is cut, and ends within its capacity
+  EXPECT_EQ(foresight_database_selftest(none.get(), nullptr, text.data(), 8), FORESIGHT_NOTHING_FOUND);
+  EXPECT_EQ(std::string(text.data()), whole.substr(0, 7));
+  EXPECT_EQ(text[8], 'x');
+  expect_refused(foresight_database_selftest(nullptr, &failed, nullptr, 0), FORESIGHT_USAGE, "database: is NULL");
+  expect_refused(foresight_database_selftest(none.get(), &failed, nullptr, 5), FORESIGHT_USAGE, "text: is NULL");
 }
 
 TEST(CInterface, refuses_options_outside_their_limits) {

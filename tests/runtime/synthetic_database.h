@@ -61,6 +61,16 @@ inline CompiledModel synthetic_model(const std::string& name, double scale) {
   model.vertices = {{0.0F, 0.0F, 0.0F}, {length, 0.0F, 0.5F}, {0.0F, length, 0.25F}, {0.0F, 0.0F, length}};
   model.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   model.triangle_faces = {3, 0, 2, 1};
+  GoldenScan& golden = model.golden_scan.emplace();
+  golden.first_row = 10;
+  golden.first_column = 20;
+  golden.rows = 2;
+  golden.columns = 3;
+  golden.depth_step = 0.375;
+  // Differences of order 3. A cell without data (100001), four with them (100100): 10, 9, 11 and 8 steps where 0, 10, 9
+  // and 11 are promised (011100, 1001, 1100, 1101); then one without (100001) and none with data (100000).
+  golden.depths = {3, '\x86', '\x47', '\x27', '\x36', '\x18', '\0'};
+  golden.T_sensor_model = {rotation_from_vector({-0.25, 1.0, 0.5}), {scale, -2.5, 900.0}};
   return model;
 }
 
