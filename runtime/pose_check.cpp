@@ -123,7 +123,7 @@ void PoseChecker::look_at(const Sample& sample, const Eigen::Vector3f& point, in
         row < static_cast<float>(camera.rows)))
     return;
   const int cell = scan_.image.cell(static_cast<int>(row), static_cast<int>(column));
-  const float across = (scan_.image[cell].z() - point.z()) * facing;
+  const float across = (scan_.depths[static_cast<std::size_t>(cell)] - point.z()) * facing;
   const auto distance = static_cast<float>(options_.distance);
   if (std::isnan(across)) return;  // no data
   if (across < -distance) {

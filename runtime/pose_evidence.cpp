@@ -1,6 +1,7 @@
 #include "runtime/pose_evidence.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "runtime/rendering.h"
@@ -73,9 +74,9 @@ enum class Judgement { beyond, missing, front, behind, tilted, explained };
 Judgement judge(const DrawnCell& cell, const Eigen::Vector3f& normal, const LabelledScan& scan,
                 const EvidenceOptions& options) {
   if (cell.cell < 0) return Judgement::beyond;
-  if (!scan.image.valid(cell.cell)) return Judgement::missing;
+  const float depth = scan.depths[static_cast<std::size_t>(cell.cell)];
+  if (std::isnan(depth)) return Judgement::missing;
   const auto distance = static_cast<float>(options.distance);
-  const float depth = scan.image[cell.cell].z();
   const float across = (depth - cell.depth) * cell.facing;
   if (across > distance) return Judgement::behind;
   if (across < -distance) return Judgement::front;
@@ -90,7 +91,7 @@ Judgement judge(const DrawnCell& cell, const Eigen::Vector3f& normal, const Labe
   return before ? Judgement::front : Judgement::tilted;
 }
 
-// Calls visit(cell, judgement, inner) for each cell that would show the object, row by row.
+// Calls visit(cell, judgement, inner) for each cell looked at that would show the object, row by row.
 template <typename Visit>
 void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,
                    const EvidenceOptions& options, const Visit& visit) {
@@ -98,10 +99,10 @@ void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const
   const int reach = scan.sensor.matching_window / 2;
   const auto distance = static_cast<float>(options.distance);
   const auto steepest = static_cast<float>(std::pow(std::cos(scan.sensor.largest_incidence), 2));
-  for (int row = 0; row < drawn.rows; ++row) {
+  for (int row = options.stride / 2; row < drawn.rows; row += options.stride) {
     const int image_row = row + drawn.first_row;
     const bool row_in_image = image_row >= 0 && image_row < scan.image.rows;
-    for (int column = 0; column < drawn.columns; ++column) {
+    for (int column = options.stride / 2; column < drawn.columns; column += options.stride) {
       const auto at = static_cast<std::size_t>(drawn.cell(row, column));
       const int triangle = drawn.triangle[at];
       if (triangle < 0) continue;
@@ -127,30 +128,32 @@ void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const
 // Counts judgements. Cells at outlines count only for what regions the object explains.
 class Tally {
  public:
-  Tally(std::size_t triangles, std::size_t regions) : of_triangle_(triangles), inner_of_region_(regions, 0) {
+  // Each cell counts for `weight`.
+  Tally(std::size_t triangles, std::size_t regions, int weight)
+      : weight_(weight), of_triangle_(triangles), inner_of_region_(regions, 0) {
     evidence_.explained_of_region.assign(regions, 0);
   }
 
   void add(int triangle, Judgement judgement, int region, bool inner) {
     const bool explained = judgement == Judgement::explained;
-    if (explained && region >= 0) ++evidence_.explained_of_region[static_cast<std::size_t>(region)];
+    if (explained && region >= 0) evidence_.explained_of_region[static_cast<std::size_t>(region)] += weight_;
     if (!inner) return;
-    ++evidence_.drawn;
-    evidence_.beyond += judgement == Judgement::beyond ? 1 : 0;
-    evidence_.missing += judgement == Judgement::missing ? 1 : 0;
-    evidence_.front += judgement == Judgement::front ? 1 : 0;
-    evidence_.behind += judgement == Judgement::behind ? 1 : 0;
-    evidence_.tilted += judgement == Judgement::tilted ? 1 : 0;
+    evidence_.drawn += weight_;
+    evidence_.beyond += judgement == Judgement::beyond ? weight_ : 0;
+    evidence_.missing += judgement == Judgement::missing ? weight_ : 0;
+    evidence_.front += judgement == Judgement::front ? weight_ : 0;
+    evidence_.behind += judgement == Judgement::behind ? weight_ : 0;
+    evidence_.tilted += judgement == Judgement::tilted ? weight_ : 0;
     if (judgement == Judgement::beyond || judgement == Judgement::missing || judgement == Judgement::front) return;
     Piece& piece = of_triangle_[static_cast<std::size_t>(triangle)];
-    ++piece.judged;
+    piece.judged += weight_;
     if (!explained) return;
-    ++piece.explained;
-    ++evidence_.explained;
+    piece.explained += weight_;
+    evidence_.explained += weight_;
     if (region >= 0) {
-      ++inner_of_region_[static_cast<std::size_t>(region)];
+      inner_of_region_[static_cast<std::size_t>(region)] += weight_;
     } else {
-      evidence_.owned += 1.0;
+      evidence_.owned += weight_;
     }
   }
 
@@ -179,6 +182,7 @@ class Tally {
     int judged = 0;
     int explained = 0;
   };
+  int weight_;
   PoseEvidence evidence_;
   std::vector<Piece> of_triangle_;
   std::vector<int> inner_of_region_;
@@ -196,9 +200,11 @@ LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, co
                     camera,
                     sensor,
                     regions,
+                    std::vector<float>(image.points.size()),
                     std::vector<int>(image.points.size(), 0),
                     std::vector<bool>(image.points.size(), false),
                     {}};
+  for (std::size_t cell = 0; cell < image.points.size(); ++cell) scan.depths[cell] = image.points[cell].z();
   for (std::size_t r = 0; r < regions.size(); ++r) {
     for (const int cell : regions[r].region.cells)
       scan.labels[static_cast<std::size_t>(cell)] = static_cast<int>(r) + 1;
@@ -241,7 +247,7 @@ double probability_right(const AcceptanceModel& model, const PoseEvidence& evide
 
 PoseEvidence gather_evidence(const CompiledModel& model, const Pose& T_sensor_model, const LabelledScan& scan,
                              const EvidenceOptions& options) {
-  Tally tally(model.triangles.size(), scan.regions.size());
+  Tally tally(model.triangles.size(), scan.regions.size(), options.stride * options.stride);
   look_at_cells(model, T_sensor_model, scan, options, [&](const DrawnCell& cell, Judgement judgement, bool inner) {
     const int region = cell.cell < 0 ? -1 : scan.labels[static_cast<std::size_t>(cell.cell)] - 1;
     tally.add(cell.triangle, judgement, region, inner);
@@ -258,6 +264,7 @@ void take(LabelledScan& scan, int cell) {
 
 void take_explained(const CompiledModel& model, const Pose& T_sensor_model, const EvidenceOptions& options,
                     LabelledScan& scan) {
+  assert(options.stride == 1);
   std::vector<int> explained;
   look_at_cells(model, T_sensor_model, scan, options, [&](const DrawnCell& cell, Judgement judgement, bool) {
     if (judgement == Judgement::explained) explained.push_back(cell.cell);

@@ -23,6 +23,7 @@ struct LabelledScan {
   const PinholeCamera& camera;
   const SensorModel& sensor;
   const std::vector<DescribedRegion>& regions;
+  std::vector<float> depths;    // by cell: z, NaN without data. Unit: mm.
   std::vector<int> labels;      // by cell: 0 = no region, i + 1 = regions[i]
   std::vector<bool> taken;      // by cell: explained by another object already, so that it contradicts this one
   std::vector<int> free_cells;  // by region: those that are not taken
@@ -42,6 +43,8 @@ struct LabelledScan {
 struct EvidenceOptions {
   double distance = 4.0;        // data this near to the drawn surface, across it, agree. Unit: mm.
   double normal_cosine = 0.87;  // of a region's normal with that of the surface it lies on. 30 degrees.
+  // Of so many rows, and of so many columns, one is looked at, and its cells stand for the others. Limit: >= 1.
+  int stride = 1;
 };
 
 // Counts of the cells that would show the object, leaving out its outlines, where half a cell decides.

@@ -97,6 +97,19 @@ std::optional<Eigen::Matrix3d> best_rotation(const Eigen::Matrix3d& correlation)
   return nearest_rotation(correlation);
 }
 
+// The same of two matches whose normals are not parallel: sums and differences of unit normals stand at right angles in
+// either frame, so that both pairs of them can be laid on each other.
+Eigen::Matrix3d rotation_of_two(const RegionFaceMatch& a, const RegionFaceMatch& b) {
+  const auto axes = [](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+    Eigen::Matrix3d frame;
+    frame.col(0) = (p + q).normalized();
+    frame.col(1) = (p - q).normalized();
+    frame.col(2) = frame.col(0).cross(frame.col(1));
+    return frame;
+  };
+  return axes(a.region->region.normal, b.region->region.normal) * axes(a.face->normal, b.face->normal).transpose();
+}
+
 // Translation t: where a face centroid c_m comes to lie, R c_m + t, is on the plane of its region, so
 // n_s . t = offset_s - n_s . R c_m. Directions these planes leave free are taken from t = c_s - R c_m instead: a
 // region's centroid is that of the face only while the whole face is seen, so it has no say where planes do.
@@ -127,8 +140,13 @@ Eigen::Vector3d translation(std::span<const RegionFaceMatch> matches, const Eige
 
 std::optional<Pose> pose_from_matches(std::span<const RegionFaceMatch> matches) {
   assert(matches.size() >= 2);
+  const bool are_parallel = parallel(matches);
+  if (matches.size() == 2 && !are_parallel) {
+    const Eigen::Matrix3d rotation = rotation_of_two(matches[0], matches[1]);
+    return Pose{rotation, translation(matches, rotation)};
+  }
   Eigen::Matrix3d correlation = correlate_normals(matches);
-  if (parallel(matches)) {
+  if (are_parallel) {
     const Eigen::Matrix3d centroids = correlate_centroids(matches);
     if (centroids.isZero(0.0)) return std::nullopt;
     correlation += centroids;

@@ -15,14 +15,14 @@ double smooth_density(const Density& density, double value) {
   return (0.5 * density.probability(value) + 0.25 * near) / density.bin_width;
 }
 
-// The background: any value from 0 to `range` is as likely. log of the ratio of likelihoods.
-double log_ratio(const Density& density, double value, double range, bool lower_bound, const RatingOptions& options) {
+// The background: any value from 0 to `range` is as likely. Ratio of likelihoods.
+double ratio(const Density& density, double value, double range, bool lower_bound, const RatingOptions& options) {
   if (lower_bound) {
     const double least = std::max(0.0, value - density.bin_width);
     const double background = std::max(1.0 - least / range, density.bin_width / range);
-    return std::log(std::max(density.probability_at_least(least) / background, options.least_ratio));
+    return std::max(density.probability_at_least(least) / background, options.least_ratio);
   }
-  return std::log(std::max(smooth_density(density, value) * range, options.least_ratio));
+  return std::max(smooth_density(density, value) * range, options.least_ratio);
 }
 
 double last_edge(const Density& density) {
@@ -54,26 +54,27 @@ MatchRater::MatchRater(const Database& database, const RatingOptions& options)
 
 std::vector<RegionMatches> MatchRater::rate(const std::vector<DescribedRegion>& regions) const {
   const double faces = static_cast<double>(database_.faces().size());
+  const double least = std::exp(options_.least_rating);
   std::vector<RegionMatches> rated(regions.size());
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const bool cut = is_cut(regions[i]);
     for (std::size_t j = 0; j < database_.faces().size(); ++j) {
       const ModelFace& face = database_.face(static_cast<int>(j));
-      double rating = std::log(faces * database_.prior(static_cast<int>(j), 0.0));
+      double ratios = faces * database_.prior(static_cast<int>(j), 0.0);
       for (std::size_t k = 0; k < ranges_.size(); ++k) {
-        rating += log_ratio(face.densities[k], regions[i].attributes[k], ranges_[k], cut, options_);
+        ratios *= ratio(face.densities[k], regions[i].attributes[k], ranges_[k], cut, options_);
       }
-      if (rating < options_.least_rating) continue;
+      if (ratios < least) continue;
       const FaceIndex at = database_.faces()[j];
-      rated[i].push_back({static_cast<int>(i), at.model, at.face, rating});
+      rated[i].push_back({static_cast<int>(i), at.model, at.face, std::log(ratios)});
     }
   }
   return rated;
 }
 
 double MatchRater::rate(const FacePair& pair, const RelationVector& relation, bool cut) const {
-  return log_ratio(pair.densities[kOrientation], relation[kOrientation], std::numbers::pi, false, options_) +
-         log_ratio(pair.densities[kMaxDistance], relation[kMaxDistance], distance_range_, cut, options_);
+  return std::log(ratio(pair.densities[kOrientation], relation[kOrientation], std::numbers::pi, false, options_) *
+                  ratio(pair.densities[kMaxDistance], relation[kMaxDistance], distance_range_, cut, options_));
 }
 
 }  // namespace foresight

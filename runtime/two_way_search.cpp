@@ -32,6 +32,7 @@ struct AcceptedPose {
 
 constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
 constexpr int kMostDoublings = 12;             // of a stretch of hypotheses
+constexpr int kRoughStride = 2;                // for a look at whether a start is worth refining
 constexpr double kRivalQuality = 0.5;          // of the start of the pose found, for a rival's to be worth settling
 constexpr double kRivalView = 0.9;             // of the cells a rival's start must show alike to be worth refining
 
@@ -124,6 +125,7 @@ class TwoWaySearch {
     if (quality(start, pose) < acceptance.least_quality) return false;
     EvidenceOptions rough;
     rough.distance = kStartDistance;
+    rough.stride = kRoughStride;
     return probability_right(acceptance, gather_evidence(model_of(start), pose, labelled_, rough)) >=
            acceptance.least_probability;
   }
@@ -197,8 +199,10 @@ class TwoWaySearch {
       if (i < tried_.size() && tried_[i]) continue;
       const Pose settled = settle(scan_, start_pose(i).model, start_pose(i).T_sensor_model, settling_);
       if (already_known({candidate}, i, settled)) continue;
-      const double probability = probability_right(model_of(i).acceptance, evidence(i, settled));
-      if (probability <= candidate.probability) continue;
+      EvidenceOptions rough = fine_;
+      rough.stride = kRoughStride;
+      const PoseEvidence evidence = gather_evidence(model_of(i), settled, labelled_, rough);
+      if (probability_right(model_of(i).acceptance, evidence) <= candidate.probability) continue;
       if (out_of_limits()) return;
       const Candidate rival = refined(i, settled);
       if (rival.probability > candidate.probability) candidate = rival;
