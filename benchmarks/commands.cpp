@@ -56,7 +56,7 @@ void add_method_options(CLI::App& command, ExperimentOptions& options) {
                                                           {"none", Pruning::none}};
   static const std::map<std::string, Loss> losses = {
       {"lorentzian", Loss::lorentzian}, {"tukey", Loss::tukey}, {"huber", Loss::huber}, {"gaussian", Loss::gaussian}};
-  command.add_option("--pruning", method.pruning, "of the paper's method: hcf (highest confidence first) or none")
+  command.add_option("--pruning", method.pruning, "hcf (highest confidence first; two-way: by rating) or none")
       ->transform(CLI::CheckedTransformer(prunings, CLI::ignore_case).description(""));
   command.add_option("--prior-sign", method.potentials.prior_sign, "1-clique potential: minus-log, or as-printed in the paper")
       ->transform(CLI::CheckedTransformer(signs, CLI::ignore_case).description(""));

@@ -94,7 +94,7 @@ enum class PriorSign {
 enum class Pruning {
   highest_confidence_first,
   none
-};  // of the paper's method; none: every match above zero stays active
+};  // none: every match above zero stays active; with Method::two_way, hypotheses are looked at however badly rated
 
 // Clique potentials of Section IV.A, for the paper's method; lower is better. The potentials of pairs count once for
 // each unordered pair. Limit: -10000 to 10000 each.

@@ -67,7 +67,7 @@ CLI::App* add_recognize(CLI::App& app, RecognizeCommand& c) {
       ->add_option("--prior-sign", c.options.potentials.prior_sign,
                    "1-clique potential: minus-log, or as-printed in the paper")
       ->transform(CLI::CheckedTransformer(signs, CLI::ignore_case).description(""));
-  command->add_option("--pruning", c.options.pruning, "hcf (highest confidence first) or none")
+  command->add_option("--pruning", c.options.pruning, "hcf (highest confidence first; two-way: by rating) or none")
       ->transform(CLI::CheckedTransformer(prunings, CLI::ignore_case).description(""));
   static const std::map<std::string, Method> methods = {{"two-way", Method::two_way}, {"paper", Method::paper}};
   command

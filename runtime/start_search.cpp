@@ -13,6 +13,7 @@ namespace foresight {
 namespace {
 
 constexpr int kRefits = 2;
+constexpr double kAnyRating = -1e9;
 constexpr double kHalfAsWell = 0.5;
 constexpr double kLeastVolume = 0.1;  // of the parallelepiped of three unit normals: less hardly fixes a point
 
@@ -22,21 +23,27 @@ std::vector<RatedMatch> best_rated(std::vector<RatedMatch> matches) {
   return matches;
 }
 
+StartSearchOptions unpruned(StartSearchOptions options) {
+  options.most_pairs = options.most_singles = std::numeric_limits<int>::max();
+  options.least_rating = kAnyRating;
+  return options;
+}
+
 }  // namespace
 
 StartSearch::StartSearch(const Database& database, const LabelledScan& scan, const StartSearchOptions& options,
                          StartSearchCounts& counts)
     : database_(database),
       scan_(scan),
-      options_(options),
+      options_(options.pruned ? options : unpruned(options)),
       counts_(counts),
       regions_(frame_regions(scan.regions)),
       shapes_(database),
-      rater_(database),
+      rater_(database, {.least_rating = options.pruned ? RatingOptions{}.least_rating : kAnyRating}),
       matches_(rater_.rate(scan.regions)),
       relations_(scan.regions),
       checker_(database, scan),
-      queue_(matches_, regions_.regions, database_, rater_, relations_, options.least_rating),
+      queue_(matches_, regions_.regions, database_, rater_, relations_, options_.least_rating),
       of_model_(database.models().size()) {
   for (const RegionMatches& matches : matches_) singles_.insert(singles_.end(), matches.begin(), matches.end());
   counts_.matches += static_cast<long>(singles_.size());

@@ -31,10 +31,17 @@ struct AcceptedPose {
 };
 
 constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
+constexpr int kAtOnce = 32;                    // hypotheses looked at before the deadline is asked for again
 constexpr int kMostDoublings = 12;             // of a stretch of hypotheses
 constexpr int kRoughStride = 2;                // for a look at whether a start is worth refining
 constexpr double kRivalQuality = 0.5;          // of the start of the pose found, for a rival's to be worth settling
 constexpr double kRivalView = 0.9;             // of the cells a rival's start must show alike to be worth refining
+
+StartSearchOptions start_search_options(const RecognizeOptions& options) {
+  StartSearchOptions search;
+  search.pruned = options.pruning != Pruning::none;
+  return search;
+}
 
 class TwoWaySearch {
  public:
@@ -49,7 +56,7 @@ class TwoWaySearch {
         fine_{agreeing_distance(labelled_.sensor)},
         checker_(scan.database, labelled_),
         settling_(scan.database, labelled_, settling_options(labelled_.sensor)),
-        search_(scan.database, labelled_, {}, counts_) {}
+        search_(scan.database, labelled_, start_search_options(options), counts_) {}
 
   // Looks for starts and tries them by turns: the best rated hypotheses are right so often that what they find, and
   // take, spares looking at most of the others. Starts that look less well wait until more are known.
@@ -57,7 +64,9 @@ class TwoWaySearch {
     bool more = true;
     for (int turn = 0; more && !out_of_limits(); ++turn) {
       watch_.lap(result_.milliseconds.verify);
-      more = search_.look_further(two_way_.first_stretch << std::min(turn, kMostDoublings));
+      int left = two_way_.first_stretch << std::min(turn, kMostDoublings);
+      for (; more && left > 0 && !out_of_limits(); left -= kAtOnce)
+        more = search_.look_further(std::min(left, kAtOnce));
       watch_.lap(result_.milliseconds.hypotheses);
       try_starts(more ? std::max(two_way_.eager_quality - turn * two_way_.eager_step, two_way_.least_eager) : 0.0);
     }
@@ -195,7 +204,7 @@ class TwoWaySearch {
     int looked_at = 0;
     const double least = kRivalQuality * start_pose(candidate.start).quality;
     for (const std::size_t i : rivals(candidate)) {
-      if (looked_at++ == two_way_.most_rivals || start_pose(i).quality < least) return;
+      if (looked_at++ == two_way_.most_rivals || start_pose(i).quality < least || out_of_limits()) return;
       if (i < tried_.size() && tried_[i]) continue;
       const Pose settled = settle(scan_, start_pose(i).model, start_pose(i).T_sensor_model, settling_);
       if (already_known({candidate}, i, settled)) continue;

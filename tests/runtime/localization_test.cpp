@@ -339,6 +339,48 @@ TEST(LocalizationReach, a_reach_beyond_all_data_changes_nothing) {
   }
 }
 
+// What an evaluation near by spares must not show in the sum.
+TEST(LocalizationReach, an_evaluation_near_by_changes_no_energy) {
+  const CompiledModel model = box_model();
+  const RangeImage image = box_image(box_pose(), PinholeCamera{});
+  const NearestDataPoint data(image);
+  const LocalizationOptions options = reaching(6.0);
+  for (int i = 0; i < 5; ++i) {
+    Pose pose = start_near(box_pose(), i, 15.0, 10.0);
+    const std::vector<int> visible = visible_points(model, sphere(), pose);
+    EnergyEvaluation before = evaluate_energy(model, visible, pose, data, options);
+    int nowhere = 0;
+    for (int step = 0; step < 12; ++step) {
+      pose = start_near(pose, step, 0.9, 0.7);
+      const EnergyEvaluation after = evaluate_energy(model, visible, pose, data, options, &before);
+      EXPECT_NEAR(after.energy, evaluate_energy(model, visible, pose, data, options).energy, 1e-9 * after.energy);
+      for (const auto& residual : after.residuals) nowhere += residual.data_index < 0 ? 1 : 0;
+      before = after;
+    }
+    EXPECT_GT(nowhere, 100);
+  }
+}
+
+TEST(LocalizationPoints, a_share_of_them_comes_as_near) {
+  const CompiledModel model = box_model();
+  const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));
+  LocalizationOptions few;
+  few.most_points = 120;
+  int all_come = 0;
+  int few_come = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Pose start = start_near(box_pose(), i, 8.0, 6.0);
+    all_come += close(localize(model, sphere(), start, data, {}).T_sensor_model, box_pose(), 1.5) ? 1 : 0;
+    few_come += close(localize(model, sphere(), start, data, few).T_sensor_model, box_pose(), 1.5) ? 1 : 0;
+  }
+  EXPECT_GT(all_come, 15);
+  EXPECT_GE(few_come, all_come - 2);
+  const Pose start = start_near(box_pose(), 1, 8.0, 6.0);
+  few.most_points = 100000;
+  EXPECT_TRUE(same(localize(model, sphere(), start, data, few).T_sensor_model,
+                   localize(model, sphere(), start, data, {}).T_sensor_model));
+}
+
 TEST(LocalizationReach, points_without_data_near_count_as_at_the_reach) {
   const CompiledModel model = box_model();
   const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));

@@ -206,6 +206,31 @@ TEST(PoseCheck, answers_the_same_whatever_was_asked_before) {
 double turn_between(const Pose& a, const Pose& b) { return rotation_angle(a.rotation.transpose() * b.rotation); }
 double distance_between(const Pose& a, const Pose& b) { return (a * kBoxCentre - b * kBoxCentre).norm(); }
 
+// Given up or not, a check answers the one question asked of it: whether the pose looks as well as that.
+TEST(PoseCheck, gives_up_only_poses_that_look_worse_than_asked_for) {
+  const LabelledScan scan = box_scan().labelled();
+  PoseChecker checker(database(), scan);
+  Random random(8);
+  int given_up = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Pose pose = test::moved(box_pose(), random.uniform(0.0, 40.0) * random.direction(),
+                                  random.uniform(0.0, 0.8) * random.direction());
+    const PoseCheck whole = checker.check(0, pose);
+    for (const double least : {0.2, 0.5, 0.8}) {
+      const PoseCheck asked = checker.check(0, pose, least);
+      if (asked.total == whole.total) {
+        EXPECT_EQ(asked.quality(), whole.quality());
+        continue;
+      }
+      ++given_up;
+      EXPECT_LT(asked.total, whole.total);
+      EXPECT_LT(whole.quality(), least);
+      EXPECT_LT(asked.quality(), least);
+    }
+  }
+  EXPECT_GT(given_up, 100);
+}
+
 TEST(RefitToPlanes, brings_a_pose_back_to_the_planes_it_touches) {
   Random random(6);
   const LabelledScan scan = box_scan().labelled();

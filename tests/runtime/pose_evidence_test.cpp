@@ -54,6 +54,25 @@ void expect_counts_add_up(const PoseEvidence& e) {
   }
 }
 
+// Every second row and column tells about the same as all.
+TEST(PoseEvidence, a_stride_changes_little) {
+  const Seen seen = box_seen({{800.0, 0, 118}});
+  EvidenceOptions coarse;
+  coarse.stride = 2;
+  for (const double shift : {0.0, 3.0, 12.0}) {
+    const Pose pose = test::moved(test::box_pose(), {shift, 0, 0}, {0, 0, 0});
+    const PoseEvidence all = box_evidence(seen, pose);
+    const PoseEvidence some = gather_evidence(test::box_model(), pose, seen.labelled(), coarse);
+    expect_counts_add_up(some);
+    EXPECT_NEAR(some.drawn, all.drawn, 0.03 * all.drawn);
+    EXPECT_NE(some.drawn, all.drawn);
+    for (std::size_t k = 0; k < kEvidenceFeatureCount; ++k) {
+      if (k == kFoundPieces) continue;  // a small piece may be below the count that decides
+      EXPECT_NEAR(evidence_features(some)[k], evidence_features(all)[k], 0.05) << k;
+    }
+  }
+}
+
 TEST(LabelScan, numbers_cells_by_their_region) {
   const Seen seen = box_seen();
   const LabelledScan scan = seen.labelled();

@@ -40,7 +40,9 @@ struct Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  Localization settled(const Pose& start) { return localize_and_settle(context, labelled, 0, start, {}, settling).localization; }
+  Localization settled(const Pose& start) {
+    return localize_and_settle(context, labelled, 0, start, {}, settling).localization;
+  }
   [[nodiscard]] Localization plain(const Pose& start) const {
     const LocalizationOptions options = near_localization_options({});
     return localize(box(), context.sphere, start, *context.data, options);

@@ -280,6 +280,16 @@ TEST(StartSearch, rivals_are_all_that_may_explain_the_same_regions) {
   EXPECT_GT(counts.hypotheses, hypotheses);
 }
 
+TEST(StartSearch, without_pruning_it_looks_at_more_and_misses_nothing) {
+  StartSearchOptions all;
+  all.pruned = false;
+  const Found pruned = find(database(), scene_of_two());
+  const Found every = find(database(), scene_of_two(), all);
+  EXPECT_GT(every.counts.matches, pruned.counts.matches);
+  EXPECT_GT(every.counts.hypotheses, 2 * pruned.counts.hypotheses);
+  EXPECT_GE(every.starts.front().quality, pruned.starts.front().quality);
+}
+
 TEST(StartSearch, where_all_is_taken_there_is_no_start) {
   LabelledScan scan = scene_of_two().labelled();
   for (int cell = 0; cell < scan.image.size(); ++cell) take(scan, cell);
