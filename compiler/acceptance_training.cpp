@@ -162,7 +162,8 @@ class SceneTeacher {
                const std::vector<DescribedRegion>& regions)
       : model_(database.models().front()),
         context_{scene.scan.image, database.content().sensor.camera, database, regions,
-                 std::make_unique<NearestDataCell>(scene.scan.image, database.content().sensor.camera)},
+                 std::make_unique<NearestDataCell>(scene.scan.image, database.content().sensor.camera,
+                                                   judging_options(database.content().sensor).stride)},
         labelled_(label_scan(scene.scan.image, context_.camera, database.content().sensor, regions)),
         settling_(database, labelled_, settling_options(labelled_.sensor)) {
     for (const SceneObject& object : scene.objects) {

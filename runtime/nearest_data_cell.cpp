@@ -29,20 +29,33 @@ float beside(float place, int first, int count) {
   return std::max({0.0F, static_cast<float>(first) - place, place - static_cast<float>(first + count - 1)});
 }
 
+RangeImage thinned(const RangeImage& image, int stride) {
+  RangeImage few((image.rows + stride - 1) / stride, (image.columns + stride - 1) / stride);
+  for (int row = 0; row < few.rows; ++row) {
+    for (int column = 0; column < few.columns; ++column) {
+      few[few.cell(row, column)] = image[image.cell(row * stride, column * stride)];
+    }
+  }
+  return few;
+}
+
 }  // namespace
 
 // The rays of a column are a plane through the camera, and so are those of a row. A point's distance from such a plane
 // d columns beside it is z d / fx times the cosine of the plane's slant, which is least at the border of the image.
 // Distances p, q, r from planes whose normals n_i have |n_i . n_j| = c_ij need a distance x with
 // p^2 + q^2 + r^2 <= x^2 (1 + max over i of the sum of c_ij) (Gershgorin, for the largest eigenvalue of n_i . n_j).
-NearestDataCell::NearestDataCell(const RangeImage& image, const PinholeCamera& camera)
-    : image_(image),
-      fx_(static_cast<float>(camera.fx)),
-      fy_(static_cast<float>(camera.fy)),
-      cx_(static_cast<float>(camera.cx)),
-      cy_(static_cast<float>(camera.cy)),
-      fine_(blocks_of(image, kFine)),
-      coarse_(blocks_of(image, kCoarse)) {
+NearestDataCell::NearestDataCell(const RangeImage& image, const PinholeCamera& camera, int stride)
+    : stride_(stride),
+      columns_(image.columns),
+      thinned_(stride > 1 ? thinned(image, stride) : RangeImage()),
+      image_(stride > 1 ? thinned_ : image),
+      fx_(static_cast<float>(camera.fx / stride)),
+      fy_(static_cast<float>(camera.fy / stride)),
+      cx_(static_cast<float>(camera.cx / stride)),
+      cy_(static_cast<float>(camera.cy / stride)),
+      fine_(blocks_of(image_, kFine)),
+      coarse_(blocks_of(image_, kCoarse)) {
   assert(camera.rows == image.rows && camera.columns == image.columns);
   const auto steepest = [](double centre, int cells, double focal) {
     return (std::max(centre, cells - centre) + 1.0) / focal;
@@ -51,8 +64,8 @@ NearestDataCell::NearestDataCell(const RangeImage& image, const PinholeCamera& c
   const double down = steepest(camera.cy, camera.rows, camera.fy);
   const double long_side = std::sqrt(1.0 + along * along);
   const double down_side = std::sqrt(1.0 + down * down);
-  column_step_ = static_cast<float>(1.0 / (camera.fx * long_side));
-  row_step_ = static_cast<float>(1.0 / (camera.fy * down_side));
+  column_step_ = static_cast<float>(stride / (camera.fx * long_side));
+  row_step_ = static_cast<float>(stride / (camera.fy * down_side));
   const double of_planes = along * down / (long_side * down_side);
   const double of_depth = along / long_side + down / down_side;
   aside_ = static_cast<float>(1.0 / (1.0 + of_planes));
@@ -154,7 +167,9 @@ NearestData::Answer NearestDataCell::find_within(const Eigen::Vector3f& query, f
     }
   }
   if (search.cell < 0) return nothing;
-  return {image_[search.cell], search.cell, std::sqrt(search.squared), search.cell};
+  const int row = search.cell / image_.columns * stride_;
+  const int cell = row * columns_ + search.cell % image_.columns * stride_;
+  return {image_[search.cell], cell, std::sqrt(search.squared), search.cell};
 }
 
 }  // namespace foresight

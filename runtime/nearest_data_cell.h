@@ -17,8 +17,11 @@ namespace foresight {
 // its own cell. A query that does not lie before the camera finds nothing.
 class NearestDataCell final : public NearestData {
  public:
-  // Refers to the image. REQUIRES: the camera has its size.
-  NearestDataCell(const RangeImage& image, const PinholeCamera& camera);
+  // Refers to the image. stride: of so many rows, and of so many columns, one takes part. REQUIRES: the camera has the
+  // image's size; stride >= 1.
+  NearestDataCell(const RangeImage& image, const PinholeCamera& camera, int stride = 1);
+  NearestDataCell(const NearestDataCell&) = delete;
+  NearestDataCell& operator=(const NearestDataCell&) = delete;
 
   [[nodiscard]] Answer find(const Eigen::Vector3f& query) const override;
   [[nodiscard]] Answer find(const Eigen::Vector3f& query, int guess) const override;
@@ -38,7 +41,10 @@ class NearestDataCell final : public NearestData {
   struct Search;
   [[nodiscard]] static Blocks blocks_of(const RangeImage& image, int side);
 
-  const RangeImage& image_;
+  int stride_;
+  int columns_;              // of the whole image
+  RangeImage thinned_;       // where the stride is not 1
+  const RangeImage& image_;  // the cells that take part
   float fx_, fy_, cx_, cy_;
   // A point is this far, by its depth, from a plane of rays one column or row beside it, at least.
   float column_step_, row_step_;

@@ -1,7 +1,6 @@
 #include "runtime/pose_evidence.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "runtime/rendering.h"
@@ -14,6 +13,7 @@ constexpr int kFewestCells = 12;   // that say something about a triangle
 constexpr double kMuch = 300.0;    // owned cells at which the amount is a half
 constexpr double kLeftOver = 0.2;  // of a region that is explained but for this share nothing remains for others
 constexpr double kLeftByLocalization = 0.8;  // Unit: mm.
+constexpr double kJudgedCell = 1.2;          // side; finer ones tell little more. Unit: mm.
 constexpr double kLeastDistance = 1.5;       // Unit: mm.
 
 // Whether all eight neighbours show the same surface going on: no outline and no inner edge of depth. largest_step():
@@ -194,6 +194,13 @@ double agreeing_distance(const SensorModel& sensor) {
   return std::max(kLeastDistance, kLeftByLocalization + 3.0 * sensor.depth_sigma());
 }
 
+EvidenceOptions judging_options(const SensorModel& sensor) {
+  EvidenceOptions options;
+  options.distance = agreeing_distance(sensor);
+  options.stride = std::max(1, static_cast<int>(kJudgedCell / sensor.cell_size()));
+  return options;
+}
+
 LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
                         const std::vector<DescribedRegion>& regions) {
   LabelledScan scan{image,
@@ -264,9 +271,10 @@ void take(LabelledScan& scan, int cell) {
 
 void take_explained(const CompiledModel& model, const Pose& T_sensor_model, const EvidenceOptions& options,
                     LabelledScan& scan) {
-  assert(options.stride == 1);
+  EvidenceOptions each = options;
+  each.stride = 1;
   std::vector<int> explained;
-  look_at_cells(model, T_sensor_model, scan, options, [&](const DrawnCell& cell, Judgement judgement, bool) {
+  look_at_cells(model, T_sensor_model, scan, each, [&](const DrawnCell& cell, Judgement judgement, bool) {
     if (judgement == Judgement::explained) explained.push_back(cell.cell);
   });
   for (const int cell : explained) take(scan, cell);

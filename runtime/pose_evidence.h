@@ -47,6 +47,10 @@ struct EvidenceOptions {
   int stride = 1;
 };
 
+// How poses are judged: by data at agreeing_distance, and by cells about a millimetre apart where the sensor's are
+// finer.
+[[nodiscard]] EvidenceOptions judging_options(const SensorModel& sensor);
+
 // Counts of the cells that would show the object, leaving out its outlines, where half a cell decides.
 struct PoseEvidence {
   int drawn = 0;         // cells

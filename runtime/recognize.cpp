@@ -9,6 +9,7 @@
 #include "runtime/nearest_data_cell.h"
 #include "runtime/nearest_data_point.h"
 #include "runtime/pose_covariance.h"
+#include "runtime/pose_evidence.h"
 #include "runtime/scan_context.h"
 #include "runtime/two_way_search.h"
 #include "runtime/verify_in_order.h"
@@ -70,9 +71,10 @@ void check_method(const RecognizeOptions& options, const Database& database, con
 namespace {
 
 // The paper searches as far as there are data, the two-way method within a short reach.
-std::unique_ptr<const NearestData> nearest_data(const RangeImage& image, const PinholeCamera& camera, Method method) {
+std::unique_ptr<const NearestData> nearest_data(const RangeImage& image, const PinholeCamera& camera,
+                                                const SensorModel& sensor, Method method) {
   if (method == Method::paper) return std::make_unique<NearestDataPoint>(image);
-  return std::make_unique<NearestDataCell>(image, camera);
+  return std::make_unique<NearestDataCell>(image, camera, judging_options(sensor).stride);
 }
 
 // Sections III to V.
@@ -130,7 +132,8 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   result.statistics.regions = static_cast<int>(regions.size());
   result.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());
   if (!regions.empty()) {
-    const ScanContext scan{image, camera, database, regions, nearest_data(image, camera, options.method)};
+    const ScanContext scan{image, camera, database, regions,
+                           nearest_data(image, camera, database.content().sensor, options.method)};
     watch.lap(result.milliseconds.localize);  // which the k-d tree serves
     if (options.method == Method::paper) {
       recognize_as_published(scan, options, deadline, result);

@@ -41,8 +41,7 @@ SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& lab
   SettledPose result;
   result.localization = localize(compiled, scan.sphere, start, *scan.data, near_localization_options(options));
   Pose& pose = result.localization.T_sensor_model;
-  EvidenceOptions fine;
-  fine.distance = agreeing_distance(labelled.sensor);
+  const EvidenceOptions fine = judging_options(labelled.sensor);
   const auto balance = [](const PoseEvidence& evidence) {
     return evidence.owned - evidence.behind - evidence.tilted - evidence.front;
   };

@@ -53,7 +53,7 @@ class TwoWaySearch {
         deadline_(deadline),
         result_(result),
         labelled_(label_scan(scan.image, scan.camera, scan.database.content().sensor, scan.regions)),
-        fine_{agreeing_distance(labelled_.sensor)},
+        fine_(judging_options(labelled_.sensor)),
         checker_(scan.database, labelled_),
         settling_(scan.database, labelled_, settling_options(labelled_.sensor)),
         search_(scan.database, labelled_, start_search_options(options), counts_) {}
@@ -134,7 +134,7 @@ class TwoWaySearch {
     if (quality(start, pose) < acceptance.least_quality) return false;
     EvidenceOptions rough;
     rough.distance = kStartDistance;
-    rough.stride = kRoughStride;
+    rough.stride = kRoughStride * fine_.stride;
     return probability_right(acceptance, gather_evidence(model_of(start), pose, labelled_, rough)) >=
            acceptance.least_probability;
   }
@@ -209,7 +209,7 @@ class TwoWaySearch {
       const Pose settled = settle(scan_, start_pose(i).model, start_pose(i).T_sensor_model, settling_);
       if (already_known({candidate}, i, settled)) continue;
       EvidenceOptions rough = fine_;
-      rough.stride = kRoughStride;
+      rough.stride *= kRoughStride;
       const PoseEvidence evidence = gather_evidence(model_of(i), settled, labelled_, rough);
       if (probability_right(model_of(i).acceptance, evidence) <= candidate.probability) continue;
       if (out_of_limits()) return;

@@ -108,6 +108,25 @@ TEST(NearestDataCell, finds_every_data_point_at_distance_zero) {
   }
 }
 
+TEST(NearestDataCell, with_a_stride_it_is_the_nearest_of_every_so_many_cells) {
+  Random random(4);
+  for (const PinholeCamera& camera : cameras()) {
+    const RangeImage image = rough_image(camera, random, 0.3);
+    RangeImage few = image;
+    for (int cell = 0; cell < image.size(); ++cell) {
+      const bool takes_part = cell / image.columns % 3 == 0 && cell % image.columns % 3 == 0;
+      if (!takes_part) few[cell] = RangeImage(1, 1)[0];
+    }
+    const NearestDataCell data(image, camera, 3);
+    for (int i = 0; i < 500; ++i) {
+      const Eigen::Vector3f query = random_query(camera, random);
+      const NearestData::Answer answer = data.find(query);
+      EXPECT_FLOAT_EQ(answer.distance, brute_force_distance(few, query));
+      EXPECT_EQ(answer.point, few[answer.cell]);
+    }
+  }
+}
+
 TEST(NearestDataCell, finds_nothing_behind_the_camera_or_without_data) {
   const PinholeCamera camera;
   const RangeImage box = test::box_image(test::box_pose(), camera);
