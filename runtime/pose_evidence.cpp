@@ -242,10 +242,14 @@ std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& 
   return features;
 }
 
-double probability_right(const AcceptanceModel& model, const std::array<double, kEvidenceFeatureCount>& features) {
+double log_odds_right(const AcceptanceModel& model, const std::array<double, kEvidenceFeatureCount>& features) {
   double sum = model.bias;
   for (std::size_t i = 0; i < features.size(); ++i) sum += model.weights[i] * features[i];
-  return 1.0 / (1.0 + std::exp(-sum));
+  return sum;
+}
+
+double probability_right(const AcceptanceModel& model, const std::array<double, kEvidenceFeatureCount>& features) {
+  return 1.0 / (1.0 + std::exp(-log_odds_right(model, features)));
 }
 
 double probability_right(const AcceptanceModel& model, const PoseEvidence& evidence) {

@@ -70,7 +70,10 @@ struct PoseEvidence {
 // The inputs of an acceptance model.
 [[nodiscard]] std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence);
 
-// How probably a pose with this evidence is right.
+// log(p / (1 - p)) of the probability p that a pose with this evidence is right.
+[[nodiscard]] double log_odds_right(const AcceptanceModel& model,
+                                    const std::array<double, kEvidenceFeatureCount>& features);
+// That probability.
 [[nodiscard]] double probability_right(const AcceptanceModel& model,
                                        const std::array<double, kEvidenceFeatureCount>& features);
 [[nodiscard]] double probability_right(const AcceptanceModel& model, const PoseEvidence& evidence);

@@ -1,6 +1,7 @@
 #include "runtime/two_way_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -21,6 +22,7 @@ struct Candidate {
   int rank = 0;           // of the start in the order of trying
   Localization localization;
   double probability = 0.0;
+  std::array<double, kEvidenceFeatureCount> features{};
 
   [[nodiscard]] const Pose& pose() const { return localization.T_sensor_model; }
 };
@@ -150,7 +152,8 @@ class TwoWaySearch {
     ++result_.statistics.verifications;
     result_.statistics.energy_evaluations += candidate.localization.energy_evaluations;
     watch_.lap(result_.milliseconds.localize);
-    candidate.probability = probability_right(model_of(start).acceptance, settled.evidence);
+    candidate.features = evidence_features(settled.evidence);
+    candidate.probability = probability_right(model_of(start).acceptance, candidate.features);
     return candidate;
   }
 
@@ -211,11 +214,23 @@ class TwoWaySearch {
       EvidenceOptions rough = fine_;
       rough.stride *= kRoughStride;
       const PoseEvidence evidence = gather_evidence(model_of(i), settled, labelled_, rough);
-      if (probability_right(model_of(i).acceptance, evidence) <= candidate.probability) continue;
+      if (!speaks_more_for(i, evidence_features(evidence), candidate)) continue;
       if (out_of_limits()) return;
       const Candidate rival = refined(i, settled);
-      if (rival.probability > candidate.probability) candidate = rival;
+      if (rival.probability >= two_way_.accepted && speaks_more_for(i, rival.features, candidate)) candidate = rival;
     }
+  }
+
+  // Whether evidence for a rival is stronger than that for the candidate, by the judges of both their objects together:
+  // each knows what right poses of its own look like, and one may be more easily convinced than the other.
+  [[nodiscard]] bool speaks_more_for(std::size_t rival, const std::array<double, kEvidenceFeatureCount>& features,
+                                     const Candidate& candidate) const {
+    double more = 0.0;
+    for (const std::size_t judge : {rival, candidate.start}) {
+      const AcceptanceModel& acceptance = model_of(judge).acceptance;
+      more += log_odds_right(acceptance, features) - log_odds_right(acceptance, candidate.features);
+    }
+    return more > 0.0;
   }
 
   // What would show the same matches the regions of which the pose explains most.
