@@ -30,6 +30,7 @@ struct Experiment {
 [[nodiscard]] Experiment add_segmentation(CLI::App& app);    // extraction alone, real scans
 [[nodiscard]] Experiment add_constraints(CLI::App& app);     // Sections III and VI.A
 [[nodiscard]] Experiment add_potentials(CLI::App& app);      // Section IV
+[[nodiscard]] Experiment add_deadlines(CLI::App& app);       // how late answers are
 [[nodiscard]] Experiment add_scale(CLI::App& app);           // Section IV, by size of the database
 [[nodiscard]] Experiment add_sensor_effect(CLI::App& app);   // Section III, what the sensor model takes into account
 [[nodiscard]] Experiment add_covariance(CLI::App& app);      // of reported poses

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
                                                           foresight::add_constraints(app),     //
                                                           foresight::add_potentials(app),      //
                                                           foresight::add_scale(app),           //
+                                                          foresight::add_deadlines(app),       //
                                                           foresight::add_sensor_effect(app)};
   return foresight::run_program("experiments", app, argc, argv, [&] {
     for (const foresight::Experiment& experiment : experiments) {

@@ -215,13 +215,14 @@ DescribedRegion describe(Region region, const RangeImage& image, const PinholeCa
 }
 
 std::vector<DescribedRegion> extract_regions(const RangeImage& image, const PinholeCamera& camera,
-                                             const SegmentationOptions& options) {
-  std::vector<Region> regions = segment(image, options);
+                                             const SegmentationOptions& options, const Stop& stop) {
+  std::vector<Region> regions = segment(image, options, stop);
   const std::vector<double> cut = cut_shares(regions, image, camera);
   const CellRays rays(camera);
   std::vector<DescribedRegion> described;
   described.reserve(regions.size());
   for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (stop && stop()) return {};
     described.push_back(describe(std::move(regions[r]), image, rays));
     described.back().cut_share = cut[r];
   }

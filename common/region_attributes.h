@@ -32,8 +32,8 @@ struct DescribedRegion {
 // covariance in its plane. Max diameter: of the convex hull. Camera: of the image (gives each cell its footprint).
 [[nodiscard]] DescribedRegion describe(Region region, const RangeImage& image, const PinholeCamera& camera);
 
-// segment() and describe() together: what both programs call.
+// segment() and describe() together: what both programs call. Stopped: no regions.
 [[nodiscard]] std::vector<DescribedRegion> extract_regions(const RangeImage& image, const PinholeCamera& camera,
-                                                           const SegmentationOptions& options);
+                                                           const SegmentationOptions& options, const Stop& stop = {});
 
 }  // namespace foresight

@@ -16,16 +16,20 @@ namespace foresight {
 namespace {
 
 // From seeds to planes grown to their borders.
-void finish_round(const RangeImage& image, const Coordinates& points, const CellConnectivity& connectivity,
-                  const SegmentationOptions& options, PlaneLabels& found) {
-  grow_planes(image, connectivity, options, found);
-  settle_borders(image, connectivity, options, found);
-  refit_planes(points, options, found);
-  split_planes(image, connectivity, options, found);
-  merge_touching_planes(connectivity, options, found);
-  settle_borders(image, connectivity, options, found);
-  refit_planes(points, options, found);
-  grow_planes(image, connectivity, options, found);
+// Whether it came to its end.
+bool finish_round(const RangeImage& image, const Coordinates& points, const CellConnectivity& connectivity,
+                  const SegmentationOptions& options, PlaneLabels& found, const Stop& stop) {
+  const auto grow = [&] { grow_planes(image, connectivity, options, found); };
+  const auto settle = [&] { settle_borders(image, connectivity, options, found); };
+  const auto refit = [&] { refit_planes(points, options, found); };
+  const auto split = [&] { split_planes(image, connectivity, options, found); };
+  const auto merge = [&] { merge_touching_planes(connectivity, options, found); };
+  for (const std::function<void()>& step :
+       std::initializer_list<std::function<void()>>{grow, settle, refit, split, merge, settle, refit, grow}) {
+    if (stop && stop()) return false;
+    step();
+  }
+  return true;
 }
 
 // Regions of the planes' cells, without those that the last fit has put out of reach.
@@ -93,17 +97,20 @@ SegmentationOptions segmentation_options_for(const SensorModel& sensor) {
   return options;
 }
 
-std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& options) {
+std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& options, const Stop& stop) {
+  const auto stopped = [&stop] { return stop && stop(); };
   const Coordinates points(image);
   const CellConnectivity connectivity(points, options);
   PlaneLabels found(image.size());
+  if (stopped()) return {};
   seed_on_grid(image, connectivity, options, found);
-  finish_round(image, points, connectivity, options, found);
+  if (!finish_round(image, points, connectivity, options, found, stop)) return {};
   seed_between(image, connectivity, options, (options.seed_block + 1) / 2,
                found);  // thin and small faces between the large ones
-  finish_round(image, points, connectivity, options, found);
+  if (!finish_round(image, points, connectivity, options, found, stop)) return {};
 
   split_planes(image, connectivity, options, found);
+  if (stopped()) return {};
 
   std::vector<Region> regions = regions_of(points, options, found);
   std::sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) {

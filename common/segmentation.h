@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "common/range_image.h"
@@ -37,8 +38,12 @@ struct Region {
   double rms = 0.0;     // root mean square distance of the data points. Unit: mm.
 };
 
-// Deterministic; regions ordered by size, largest first (ties: lowest first cell).
-[[nodiscard]] std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& options);
+// Asked between the steps of long work: whether to end it, unfinished. None: never.
+using Stop = std::function<bool()>;
+
+// Deterministic; regions ordered by size, largest first (ties: lowest first cell). Stopped: no regions.
+[[nodiscard]] std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& options,
+                                          const Stop& stop = {});
 
 // 0 = no region, i + 1 = regions[i]. Size: image cells.
 [[nodiscard]] std::vector<int> label_image(const std::vector<Region>& regions, int cells);

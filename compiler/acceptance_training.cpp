@@ -298,6 +298,7 @@ AcceptanceModel train_acceptance(const CadModel& cad, const CompiledModel& compi
                                  const AcceptanceTrainingOptions& options) {
   CompiledDatabase content = settings;
   content.models = {compiled};
+  content.models.front().acceptance = {};  // what the search asks of starts is still to be learnt
   const Database database(std::move(content));
   const Cast cast = cast_of(cad, options.seed);
   std::vector<Lessons> of_scene(static_cast<std::size_t>(options.scenes));

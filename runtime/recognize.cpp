@@ -127,7 +127,9 @@ RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera
   Stopwatch total;
   Stopwatch watch;
   double ignored = 0.0;  // the searches time their own stages
-  const auto regions = extract_regions(image, camera, database.content().segmentation);
+  const auto late = [&deadline] { return deadline && std::chrono::steady_clock::now() >= *deadline; };
+  const auto regions = extract_regions(image, camera, database.content().segmentation, late);
+  if (regions.empty() && late()) result.complete = false;
   watch.lap(result.milliseconds.extract);
   result.statistics.regions = static_cast<int>(regions.size());
   result.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());

@@ -11,6 +11,7 @@
 namespace foresight {
 namespace {
 
+constexpr double kLeastVolume = 0.1;  // of the parallelepiped of three unit normals
 constexpr double kSameEnd = 3.0;      // shifts nearer than this are one start. Unit: mm.
 constexpr double kReach = 6.0;        // a region may seem to reach this far beyond its face, and
 constexpr double kReachShare = 0.08;  // this share of the face. Unit: mm, 1.
@@ -200,6 +201,10 @@ std::vector<Pose> pair_starts(const Database& database, const FaceShapes& shapes
     add(seen.high - whole.high);
   }
   return starts;
+}
+
+bool same_handed(double of_regions, double of_faces) {
+  return std::min(std::abs(of_regions), std::abs(of_faces)) >= kLeastVolume && (of_regions > 0.0) == (of_faces > 0.0);
 }
 
 std::vector<Pose> single_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,

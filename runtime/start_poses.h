@@ -56,6 +56,11 @@ struct ScanRegions {
 [[nodiscard]] std::vector<Pose> pair_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,
                                             const MatchPair& pair);
 
+// Whether three regions and three faces are seen from the same side, by the triple products of their normals: those of
+// an object and of its mirror image have opposite signs. Not so where either is too small: such planes hardly fix a
+// point.
+[[nodiscard]] bool same_handed(double of_regions, double of_faces);
+
 // All symmetric ways to lay the face on the region's plane: smallest rectangles with each other, their centres or,
 // where the region is cut, one of their corners together; where it is whole, also the principal axes with each other.
 // None when the region reaches beyond the face.

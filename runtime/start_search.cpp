@@ -13,9 +13,9 @@ namespace foresight {
 namespace {
 
 constexpr int kRefits = 2;
+constexpr int kAtOnce = 16;  // hypotheses between two questions whether to stop
 constexpr double kAnyRating = -1e9;
 constexpr double kHalfAsWell = 0.5;
-constexpr double kLeastVolume = 0.1;  // of the parallelepiped of three unit normals: less hardly fixes a point
 
 std::vector<RatedMatch> best_rated(std::vector<RatedMatch> matches) {
   std::stable_sort(matches.begin(), matches.end(),
@@ -68,14 +68,22 @@ bool StartSearch::look_further(int hypotheses) {
   return false;
 }
 
-void StartSearch::look_for_rivals(int region, int second) {
+void StartSearch::look_for_rivals(int region, int second, const Stop& stop) {
   if (!rivals_.insert({region, second}).second) return;
+  int looked_at = 0;
+  const auto stopped = [&] { return ++looked_at % kAtOnce == 0 && stop && stop(); };
   if (second >= 0) {
-    for (const MatchPair& pair : queue_.pairs_of(region, second, options_.most_rivals)) try_pair(pair);
+    for (const MatchPair& pair : queue_.pairs_of(region, second, options_.most_rivals)) {
+      if (stopped()) return;
+      try_pair(pair);
+    }
   }
   const RegionMatches singles = best_rated(matches_[static_cast<std::size_t>(region)]);
   const auto most = static_cast<std::size_t>(options_.most_rivals);
-  for (std::size_t i = 0; i < std::min(most, singles.size()); ++i) try_single(singles[i]);
+  for (std::size_t i = 0; i < std::min(most, singles.size()); ++i) {
+    if (stopped()) return;
+    try_single(singles[i]);
+  }
 }
 
 PoseCheck StartSearch::look(int model, const Pose& pose, double least_quality) {
@@ -141,12 +149,10 @@ std::vector<RatedMatch> StartSearch::thirds(const MatchPair& pair) {
     const int index = static_cast<int>(r);
     if (index == pair.a.region || index == pair.b.region || is_taken(scan_, index)) continue;
     const double volume = seen.dot(regions_.regions[r].region.normal);
-    if (std::abs(volume) < kLeastVolume) continue;
     const auto run = std::equal_range(matches_[r].begin(), matches_[r].end(), RatedMatch{0, pair.a.model, 0, 0.0},
                                       [](const RatedMatch& a, const RatedMatch& b) { return a.model < b.model; });
     for (auto third = run.first; third != run.second; ++third) {
-      const double model_volume = modelled.dot(face(*third).normal);
-      if (std::abs(model_volume) < kLeastVolume || (model_volume > 0.0) != (volume > 0.0)) continue;
+      if (!same_handed(volume, modelled.dot(face(*third).normal))) continue;
       const std::optional<double> rating = rate_third(pair, *third);
       if (rating && *rating > 0.0) found.push_back({*rating, *third});
     }

@@ -58,7 +58,8 @@ class StartSearch {
   bool look_further(int hypotheses);
   // Looks at all that may explain these regions, the best rated first: pairs of the two, then the first alone. Again:
   // does nothing. second: -1 where one region is all.
-  void look_for_rivals(int region, int second);
+  // stop: asked on the way.
+  void look_for_rivals(int region, int second, const Stop& stop = {});
 
   // In the order they were found. A start that settles where another did replaces it where it looks better.
   [[nodiscard]] const std::vector<StartPose>& starts() const { return starts_; }

@@ -243,7 +243,10 @@ class TwoWaySearch {
     std::vector<std::pair<double, int>> regions;
     for (const auto& [region, count] : cells) regions.push_back({-count, region});
     std::sort(regions.begin(), regions.end());
-    if (!regions.empty()) search_.look_for_rivals(regions[0].second, regions.size() > 1 ? regions[1].second : -1);
+    if (!regions.empty()) {
+      search_.look_for_rivals(regions[0].second, regions.size() > 1 ? regions[1].second : -1,
+                              [this] { return out_of_limits(); });
+    }
     watch_.lap(result_.milliseconds.hypotheses);
   }
 
@@ -297,11 +300,10 @@ class TwoWaySearch {
     int looked_at = 0;
     for (const std::size_t i : rivals(candidate)) {
       const StartPose& rival = start_pose(i);
-      if (looked_at == two_way_.most_rivals) break;
+      if (looked_at == two_way_.most_rivals || out_of_limits()) break;
       if (already_known(found, i, rival.T_sensor_model)) continue;
       ++looked_at;
       if (same_share(view, drawn(i, rival.T_sensor_model), two_way_.same_distance) < kRivalView) continue;
-      if (out_of_limits()) break;
       const Candidate other = refined(i, rival.T_sensor_model);
       if (other.probability < two_way_.accepted || already_known(found, i, other.pose())) continue;
       if (same_share(view, drawn(i, other.pose()), two_way_.same_distance) < two_way_.same_view) continue;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "common/errors.h"
+#include "common/region_attributes.h"
 #include "tests/images.h"
 
 namespace foresight {
@@ -299,6 +300,23 @@ TEST(Segmentation, options_outside_their_limits_are_refused) {
   refused([](auto& o) { o.seed_block = 1; });
   refused([](auto& o) { o.smallest_region = 2; });
   refused([](auto& o) { o.largest_depth_step = 0; });
+}
+
+// Whenever it is stopped, it is soon over and without regions; asked and not stopped, it finds what it always does.
+TEST(Segmentation, can_be_stopped_between_its_steps) {
+  const RangeImage image = render(box_at({120, 90, 70}, corner_view(), {0, 0, 900}), PinholeCamera{});
+  const SegmentationOptions options = segmentation_options_for(quiet_sensor());
+  int asked = 0;
+  const auto whole = segment(image, options, [&asked] { return ++asked < 0; });
+  EXPECT_EQ(whole.size(), segment(image, options).size());
+  EXPECT_GT(whole.size(), 2U);
+  EXPECT_GT(asked, 10);
+  for (int last = 1; last <= asked; ++last) {
+    int times = 0;
+    EXPECT_TRUE(segment(image, options, [&times, last] { return ++times >= last; }).empty()) << last;
+    EXPECT_EQ(times, last);
+  }
+  EXPECT_TRUE(extract_regions(image, PinholeCamera{}, options, [] { return true; }).empty());
 }
 
 }  // namespace

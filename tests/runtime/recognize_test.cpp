@@ -243,11 +243,31 @@ TEST(Recognize, stops_at_a_deadline_and_says_so) {
     EXPECT_FALSE(late.complete);
     EXPECT_TRUE(late.detections.empty());
     EXPECT_EQ(late.statistics.verifications, 0);
-    EXPECT_GT(late.statistics.regions, 0);
+    EXPECT_EQ(late.statistics.regions, 0);  // not even extraction was begun
     const auto far = std::chrono::steady_clock::now() + std::chrono::hours(1);
     expect_same(recognize_in(one_object().scan.image, with(method), far),
                 recognize_in(one_object().scan.image, with(method)));
   }
+}
+
+// Wherever a deadline falls, what is reported by then is right, and less than everything is called incomplete.
+TEST(Recognize, an_answer_cut_short_says_so_and_is_still_right) {
+  const RecognitionResult whole = recognize_in(two_objects().scan.image, {});
+  int incomplete = 0;
+  for (const double share : {0.01, 0.1, 0.2, 0.4, 0.6, 0.8}) {
+    const auto allowed = std::chrono::duration<double, std::milli>(share * whole.milliseconds.total);
+    const auto deadline =
+        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(allowed);
+    const RecognitionResult cut = recognize_in(two_objects().scan.image, {}, deadline);
+    if (cut.complete) continue;
+    ++incomplete;
+    EXPECT_LE(cut.detections.size(), whole.detections.size());
+    for (const Detection& detection : cut.detections) {
+      EXPECT_TRUE(std::any_of(whole.detections.begin(), whole.detections.end(),
+                              [&](const Detection& other) { return other.object == detection.object; }));
+    }
+  }
+  EXPECT_GT(incomplete, 0);
 }
 
 TEST(Recognize, stops_after_the_detections_asked_for) {

@@ -345,5 +345,28 @@ TEST(SingleStarts, are_none_for_a_cut_region_larger_than_the_face) {
   for (const int smaller : {0, 2, 6}) EXPECT_TRUE(view.starts(true, smaller).empty()) << smaller;
 }
 
+// A corner and its mirror image have the same angles between their planes: the triple product alone tells them apart.
+TEST(SameHanded, tells_a_corner_from_its_mirror_image) {
+  Random random(12);
+  int told = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d a = random.direction();
+    const Vector3d b = random.direction();
+    const Vector3d c = random.direction();
+    const Eigen::Matrix3d turn = random.rotation();
+    const Eigen::Matrix3d mirror = turn * Eigen::DiagonalMatrix<double, 3>(-1.0, 1.0, 1.0);
+    const double corner = a.cross(b).dot(c);
+    const double turned = (turn * a).cross(turn * b).dot(turn * c);
+    const double mirrored = (mirror * a).cross(mirror * b).dot(mirror * c);
+    EXPECT_FALSE(same_handed(corner, mirrored));
+    EXPECT_EQ(same_handed(corner, turned), std::min(std::abs(corner), std::abs(turned)) >= 0.1);
+    told += same_handed(corner, turned) ? 1 : 0;
+  }
+  EXPECT_GT(told, 100);
+  EXPECT_FALSE(same_handed(0.05, 0.9));
+  EXPECT_FALSE(same_handed(-0.9, -0.05));
+  EXPECT_TRUE(same_handed(-0.9, -0.2));
+}
+
 }  // namespace
 }  // namespace foresight
