@@ -27,13 +27,15 @@ struct StartPose {
 };
 
 struct StartSearchOptions {
-  int most_pairs = 2000;      // hypotheses of two or three regions looked at. Limit: >= 0.
-  double least_rating = 4.0;  // of these
-  int most_singles = 1000;    // single matches looked at. Limit: >= 0.
-  int most_rivals = 200;      // pairs, and as many single matches, looked at for the same regions. Limit: >= 0.
-  int most_thirds = 2;        // third regions tried for a pair
-  // Matches that hardly anything speaks for are looked at as well, and all pairs and singles, whatever their rating:
-  // what pruning costs and spares is measured against this.
+  int most_pairs = 2000;  // hypotheses of two or three regions looked at. Limit: >= 0.
+  // Of these. In 24 noisy and 24 clean scenes of clutter (seed 11) and the ABW scans no pair that led to an accepted
+  // pose was rated below 4.5.
+  double least_rating = 4.0;
+  int most_singles = 1000;  // single matches looked at. Limit: >= 0.
+  int most_rivals = 200;    // pairs, and as many single matches, looked at for the same regions. Limit: >= 0.
+  int most_thirds = 2;      // third regions tried for a pair
+  // false: the limits on pairs, singles and their ratings do not hold, and matches that hardly anything speaks for are
+  // looked at as well. What pruning costs and spares is measured against this.
   bool pruned = true;
   double same_distance = 4.0;  // starts this near, and
   double same_angle = 0.035;   // turned by less than 2 degrees, are one. Unit: mm, rad. Limit: > 0.
