@@ -13,6 +13,7 @@
 #include "benchmarks/series.h"
 #include "common/errors.h"
 #include "runtime/pose_covariance.h"
+#include "runtime/recognize.h"
 
 namespace foresight {
 namespace {
@@ -25,11 +26,6 @@ struct PoseError {
   double distance = 0.0;   // of the model's centre. Unit: mm.
   double deviation = 0.0;  // the square root of that distance's expected square. Unit: mm.
 };
-
-Pose pose_of(const Detection& detection) {
-  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> T(detection.T_sensor_model.data());
-  return {T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>()};
-}
 
 // Of the poses at which the object looks the same as at the true one, the nearest.
 Pose nearest_truth(const ScoredObject& object, const Pose& truth, const Pose& reported) {
@@ -53,7 +49,7 @@ Pose nearest_truth(const ScoredObject& object, const Pose& truth, const Pose& re
 }
 
 PoseError error_of(const Detection& detection, const Pose& truth, const Eigen::Vector3d& centre) {
-  const Pose reported = pose_of(detection);
+  const Pose reported = pose_of(detection.T_sensor_model);
   const Eigen::AngleAxisd turn(Eigen::Matrix3d(truth.rotation * reported.rotation.transpose()));
   Eigen::Matrix<double, 6, 1> error;
   error << truth.translation - reported.translation, turn.angle() * turn.axis();
@@ -77,7 +73,7 @@ std::vector<PoseError> errors_of_scan(const SeriesSetup& setup, const Contestant
   for (const Eigen::Vector3d& vertex : object.vertices) box.extend(vertex);
   std::vector<PoseError> errors;
   for (const Detection& detection : contestant.recognize(scene.scan.image, setup.sensor.camera).detections) {
-    const Pose reported = pose_of(detection);
+    const Pose reported = pose_of(detection.T_sensor_model);
     if (detection.object != setup.models[model].name || mssd(object, reported, truth) > object.tolerance()) continue;
     errors.push_back(error_of(detection, nearest_truth(object, truth, reported), box.center()));
   }

@@ -39,17 +39,6 @@ std::vector<std::string> paper_objects() {
   return files;
 }
 
-Pose pose_of(const std::array<double, 16>& T) {
-  Pose pose;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      pose.rotation(row, column) = T[static_cast<std::size_t>(4 * row + column)];
-    }
-    pose.translation[row] = T[static_cast<std::size_t>(4 * row + 3)];
-  }
-  return pose;
-}
-
 int object_named(const std::vector<CadModel>& models, const std::string& name) {
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (models[i].name == name) return static_cast<int>(i);

@@ -24,6 +24,11 @@ std::vector<Label> prune(const HypothesisField& field, Pruning pruning) {
 
 }  // namespace
 
+Pose pose_of(const std::array<double, 16>& T) {
+  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(T.data());
+  return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
+}
+
 LocalizationOptions localization_options(const RecognizeOptions& options) {
   LocalizationOptions localization;
   localization.loss = options.loss;
@@ -101,11 +106,6 @@ const CompiledModel& model_of(const Detection& detection, const Database& databa
   const auto& models = database.models();
   return *std::find_if(models.begin(), models.end(),
                        [&](const CompiledModel& model) { return model.name == detection.object; });
-}
-
-Pose pose_of(const Detection& detection) {
-  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> T(detection.T_sensor_model.data());
-  return {T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>()};
 }
 
 // w, x, y, z. Of the two that mean the same rotation, the one with w > 0, or whose first number other than 0 is.
@@ -187,7 +187,7 @@ Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
 
 void add_covariance(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
                     const CompiledModel& model, Detection& detection) {
-  const PoseCovariance covariance = pose_covariance(model, pose_of(detection), image, camera, sensor);
+  const PoseCovariance covariance = pose_covariance(model, pose_of(detection.T_sensor_model), image, camera, sensor);
   std::copy(covariance.data(), covariance.data() + covariance.size(), detection.covariance.begin());  // symmetric
 }
 

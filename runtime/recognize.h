@@ -20,6 +20,9 @@ void check(const RecognizeOptions& options);  // throws UsageError
 // Throws DatabaseError naming the file when the method of the options needs what the database does not hold.
 void check_method(const RecognizeOptions& options, const Database& database, const std::string& file);
 
+// A reported T_sensor_model, row by row.
+[[nodiscard]] Pose pose_of(const std::array<double, 16>& T);
+
 // The options of single stages.
 [[nodiscard]] LocalizationOptions localization_options(const RecognizeOptions& options);
 [[nodiscard]] VerificationOptions verification_options(const RecognizeOptions& options);

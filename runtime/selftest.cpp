@@ -11,11 +11,6 @@
 namespace foresight {
 namespace {
 
-Pose pose_in(const std::array<double, 16>& T) {
-  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(T.data());
-  return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
-}
-
 // The nearest of the poses looked at so far.
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
@@ -23,7 +18,7 @@ struct Nearest {
   double score = 0.0;
 
   void look_at(const std::array<double, 16>& T, double its_score, const ScoredObject& object, const Pose& truth) {
-    const Pose pose = pose_in(T);
+    const Pose pose = pose_of(T);
     const double its_distance = mssd(object, pose, truth);
     if (its_distance < distance) *this = {its_distance, pose, its_score};
   }
