@@ -51,10 +51,13 @@ StartSearch::StartSearch(const Database& database, const LabelledScan& scan, con
   singles_.resize(std::min(singles_.size(), static_cast<std::size_t>(options_.most_singles)));
 }
 
-bool StartSearch::look_further(int hypotheses) {
+bool StartSearch::stopped(const Stop& stop) const { return counts_.hypotheses % kAtOnce == 0 && stop && stop(); }
+
+bool StartSearch::look_further(int hypotheses, const Stop& stop) {
   const auto is_free = [this](int region) { return !is_taken(scan_, region); };
   int looked_at = 0;
   for (; pairs_ < options_.most_pairs && looked_at < hypotheses; ++looked_at, ++pairs_) {
+    if (stopped(stop)) return true;
     const std::optional<MatchPair> pair = queue_.next(is_free);
     if (!pair) break;
     try_pair(*pair);
@@ -62,7 +65,7 @@ bool StartSearch::look_further(int hypotheses) {
   for (; next_single_ < singles_.size(); ++next_single_) {
     const RatedMatch& match = singles_[next_single_];
     if (!is_free(match.region)) continue;
-    if (looked_at++ >= hypotheses) return true;
+    if (looked_at++ >= hypotheses || stopped(stop)) return true;
     try_single(match);
   }
   return false;
@@ -70,18 +73,16 @@ bool StartSearch::look_further(int hypotheses) {
 
 void StartSearch::look_for_rivals(int region, int second, const Stop& stop) {
   if (!rivals_.insert({region, second}).second) return;
-  int looked_at = 0;
-  const auto stopped = [&] { return ++looked_at % kAtOnce == 0 && stop && stop(); };
   if (second >= 0) {
     for (const MatchPair& pair : queue_.pairs_of(region, second, options_.most_rivals)) {
-      if (stopped()) return;
+      if (stopped(stop)) return;
       try_pair(pair);
     }
   }
   const RegionMatches singles = best_rated(matches_[static_cast<std::size_t>(region)]);
   const auto most = static_cast<std::size_t>(options_.most_rivals);
   for (std::size_t i = 0; i < std::min(most, singles.size()); ++i) {
-    if (stopped()) return;
+    if (stopped(stop)) return;
     try_single(singles[i]);
   }
 }

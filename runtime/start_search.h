@@ -56,11 +56,10 @@ class StartSearch {
               StartSearchCounts& counts);
 
   // Looks at the next hypotheses, at most so many: the best rated pairs first, then single regions. Whether more may be
-  // left.
-  bool look_further(int hypotheses);
+  // left. stop: asked on the way.
+  bool look_further(int hypotheses, const Stop& stop = {});
   // Looks at all that may explain these regions, the best rated first: pairs of the two, then the first alone. Again:
-  // does nothing. second: -1 where one region is all.
-  // stop: asked on the way.
+  // does nothing. second: -1 where one region is all. stop: asked on the way.
   void look_for_rivals(int region, int second, const Stop& stop = {});
 
   // In the order they were found. A start that settles where another did replaces it where it looks better.
@@ -76,6 +75,8 @@ class StartSearch {
   [[nodiscard]] const ModelFace& face(const RatedMatch& match) const {
     return model(match.model).faces[static_cast<std::size_t>(match.face)];
   }
+  // Whether to stop, asked for every so many hypotheses.
+  [[nodiscard]] bool stopped(const Stop& stop) const;
   PoseCheck look(int model, const Pose& pose, double least_quality);
   [[nodiscard]] double least_quality(int index) const;
   void consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const std::vector<int>& regions);

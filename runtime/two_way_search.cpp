@@ -33,7 +33,6 @@ struct AcceptedPose {
 };
 
 constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
-constexpr int kAtOnce = 32;                    // hypotheses looked at before the deadline is asked for again
 constexpr int kMostDoublings = 12;             // of a stretch of hypotheses
 constexpr int kRoughStride = 2;                // for a look at whether a start is worth refining
 constexpr double kRivalQuality = 0.5;          // of the start of the pose found, for a rival's to be worth settling
@@ -66,9 +65,8 @@ class TwoWaySearch {
     bool more = true;
     for (int turn = 0; more && !out_of_limits(); ++turn) {
       watch_.lap(result_.milliseconds.verify);
-      int left = two_way_.first_stretch << std::min(turn, kMostDoublings);
-      for (; more && left > 0 && !out_of_limits(); left -= kAtOnce)
-        more = search_.look_further(std::min(left, kAtOnce));
+      more = search_.look_further(two_way_.first_stretch << std::min(turn, kMostDoublings),
+                                  [this] { return out_of_limits(); });
       watch_.lap(result_.milliseconds.hypotheses);
       try_starts(more ? std::max(two_way_.eager_quality - turn * two_way_.eager_step, two_way_.least_eager) : 0.0);
     }
