@@ -90,8 +90,8 @@ BoxMask describe_mask(std::vector<int> cells, const CadModel& model, const Range
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(with_data), [&](int cell) { return image.valid(cell); });
   std::vector<int> top = most_common_plane(with_data, image, reach);
   const Plane plane = fit_plane(top, image);
-  const auto on_plane = [&](std::vector<int> chosen) {
-    return describe({std::move(chosen), plane.normal, plane.offset, 0.0}, image, camera);
+  const auto on_plane = [&](const std::vector<int>& chosen) {
+    return describe({{chosen.begin(), chosen.end()}, plane.normal, plane.offset, 0.0}, image, camera);
   };
   mask.visible = on_plane(with_data).attributes[kArea] / largest_face(model);
   mask.top = on_plane(std::move(top));

@@ -26,7 +26,7 @@ bool may_be_pair(const RelationVector& relation, const CadGeometry& model, int a
          within(relation[kMaxDistance], of_faces[kMaxDistance], bounds);
 }
 
-void link(HypothesisField& field, const std::vector<int>& of_a, const std::vector<int>& of_b,
+void link(HypothesisField& field, const PoolVector<int>& of_a, const PoolVector<int>& of_b,
           const RelationVector& relation, const Database& database, const std::vector<const CadGeometry*>& geometry,
           const CadBounds& bounds) {
   const auto face_of = [&](int match) { return database.faces()[at(field.matches[at(match)].face)]; };
@@ -57,7 +57,7 @@ CadGeometry cad_geometry(const CadModel& model) {
   return geometry;
 }
 
-HypothesisField cad_field(const std::vector<DescribedRegion>& regions, const Database& database,
+HypothesisField cad_field(const PoolVector<DescribedRegion>& regions, const Database& database,
                           const std::vector<const CadGeometry*>& geometry, const CadBounds& bounds) {
   HypothesisField field;
   field.by_region.resize(regions.size());

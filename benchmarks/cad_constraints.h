@@ -29,7 +29,7 @@ struct CadBounds {
 // The field of all matches and supporting pairs within the bounds, without unary energies and likelihoods: every match
 // is as good as every other. Faces that the compiler never found in any view take no part, as in the method itself.
 // geometry: of each model of the database.
-[[nodiscard]] HypothesisField cad_field(const std::vector<DescribedRegion>& regions, const Database& database,
+[[nodiscard]] HypothesisField cad_field(const PoolVector<DescribedRegion>& regions, const Database& database,
                                         const std::vector<const CadGeometry*>& geometry, const CadBounds& bounds);
 
 }  // namespace foresight

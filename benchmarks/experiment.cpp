@@ -12,6 +12,7 @@
 #include "benchmarks/view_comparison.h"
 #include "common/atomic_file.h"
 #include "common/errors.h"
+#include "common/memory_pool.h"
 #include "common/program.h"
 #include "compiler/compile.h"
 #include "compiler/sensor_file.h"
@@ -119,6 +120,8 @@ std::vector<Contestant> contestants(const ExperimentOptions& options, const std:
       RecognizeOptions method = options.method;
       method.method = name == "paper" ? Method::paper : Method::two_way;
       result.push_back({name, [&database, method](const RangeImage& image, const PinholeCamera& camera) {
+                          static thread_local MemoryPool pool;  // as each thread's Recognizer has one
+                          const PoolScope scope(pool);
                           return recognize(image, camera, database, method);
                         }});
       continue;

@@ -16,7 +16,7 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 double area_of(const DescribedRegion& region) { return region.attributes[kArea]; }
 
 // Place of each region in the order of size, largest first.
-std::vector<int> size_ranks(const std::vector<DescribedRegion>& regions) {
+std::vector<int> size_ranks(const PoolVector<DescribedRegion>& regions) {
   std::vector<int> order(regions.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -28,12 +28,12 @@ std::vector<int> size_ranks(const std::vector<DescribedRegion>& regions) {
 
 // Sorts hypotheses by a key computed once for each; equals stay in their order.
 template <typename Key, typename KeyOf>
-void sort_by(std::vector<ObjectHypothesis>& hypotheses, const KeyOf& key_of) {
+void sort_by(PoolVector<ObjectHypothesis>& hypotheses, const KeyOf& key_of) {
   std::vector<std::pair<Key, std::size_t>> keys;
   keys.reserve(hypotheses.size());
   for (std::size_t i = 0; i < hypotheses.size(); ++i) keys.emplace_back(key_of(hypotheses[i]), i);
   std::sort(keys.begin(), keys.end());
-  std::vector<ObjectHypothesis> sorted;
+  PoolVector<ObjectHypothesis> sorted;
   sorted.reserve(hypotheses.size());
   for (const auto& [key, i] : keys) sorted.push_back(std::move(hypotheses[i]));
   hypotheses = std::move(sorted);
@@ -57,19 +57,19 @@ std::vector<int> HypothesisList::regions(std::size_t i) const {
   return result;
 }
 
-HypothesisList likely_hypotheses(const std::vector<DescribedRegion>& regions, const Database& database,
+HypothesisList likely_hypotheses(const PoolVector<DescribedRegion>& regions, const Database& database,
                                  Pruning pruning) {
   const BackgroundOptions background = background_for(database.content().density);
   HypothesisList list;
   list.field =
       build_hypothesis_field(regions, match_likelihoods(regions, database, background), database, background, {});
-  const std::vector<Label> labels = pruning == Pruning::none ? std::vector<Label>(list.field.matches.size(), kOn)
-                                                             : highest_confidence_first(list.field);
+  const PoolVector<Label> labels = pruning == Pruning::none ? PoolVector<Label>(list.field.matches.size(), kOn)
+                                                            : highest_confidence_first(list.field);
   list.hypotheses = hypothesis_cliques(list.field, database, labels);
   return list;
 }
 
-void sort_by_region_size(HypothesisList& list, const std::vector<DescribedRegion>& regions) {
+void sort_by_region_size(HypothesisList& list, const PoolVector<DescribedRegion>& regions) {
   sort_by<double>(list.hypotheses, [&](const ObjectHypothesis& hypothesis) {
     double area = 0.0;
     for (const int match : hypothesis.matches) area += area_of(regions[at(list.field.matches[at(match)].region)]);
@@ -77,12 +77,12 @@ void sort_by_region_size(HypothesisList& list, const std::vector<DescribedRegion
   });
 }
 
-HypothesisList tree_hypotheses(const std::vector<DescribedRegion>& regions, const Database& database,
+HypothesisList tree_hypotheses(const PoolVector<DescribedRegion>& regions, const Database& database,
                                const std::vector<const CadGeometry*>& geometry, const CadBounds& bounds,
                                Random random) {
   HypothesisList list;
   list.field = cad_field(regions, database, geometry, bounds);
-  list.hypotheses = hypothesis_cliques(list.field, database, std::vector<Label>(list.field.matches.size(), kOn));
+  list.hypotheses = hypothesis_cliques(list.field, database, PoolVector<Label>(list.field.matches.size(), kOn));
 
   const std::vector<int> ranks = size_ranks(regions);
   const std::vector<std::size_t> places = random_order(database.models().size(), random);

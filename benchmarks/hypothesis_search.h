@@ -30,24 +30,24 @@ inline constexpr std::array<const char*, 8> kSearchNames = {
 // Hypotheses of one scan for one database.
 struct HypothesisList {
   HypothesisField field;
-  std::vector<ObjectHypothesis> hypotheses;  // in the order of the search
+  PoolVector<ObjectHypothesis> hypotheses;  // in the order of the search
 
   [[nodiscard]] Clique clique(std::size_t i, const Database& database, int first_model) const;
   [[nodiscard]] std::vector<int> regions(std::size_t i) const;
 };
 
 // The paper's hypotheses, least energy first.
-[[nodiscard]] HypothesisList likely_hypotheses(const std::vector<DescribedRegion>& regions, const Database& database,
+[[nodiscard]] HypothesisList likely_hypotheses(const PoolVector<DescribedRegion>& regions, const Database& database,
                                                Pruning pruning);
 
 // Largest total area of the regions first; equals stay in their order.
-void sort_by_region_size(HypothesisList& list, const std::vector<DescribedRegion>& regions);
+void sort_by_region_size(HypothesisList& list, const PoolVector<DescribedRegion>& regions);
 
 // The interpretation tree to depth three. Its levels are the regions, largest first; a branch gives the next region a
 // face of any model, or none. A node at depth three is a hypothesis, and a node at depth two without a consistent third
 // match anywhere, as in Section IV.B. Depth first. Which model comes first must not depend on the place in the
 // database, so the models are shuffled by `random`.
-[[nodiscard]] HypothesisList tree_hypotheses(const std::vector<DescribedRegion>& regions, const Database& database,
+[[nodiscard]] HypothesisList tree_hypotheses(const PoolVector<DescribedRegion>& regions, const Database& database,
                                              const std::vector<const CadGeometry*>& geometry, const CadBounds& bounds,
                                              Random random);
 

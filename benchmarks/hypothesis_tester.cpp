@@ -10,8 +10,8 @@
 namespace foresight {
 
 HypothesisTester::HypothesisTester(const RangeImage& image, const PinholeCamera& camera,
-                                   const std::vector<DescribedRegion>& regions,
-                                   const std::vector<CompiledModel>& models, const SceneTruth& truth)
+                                   const PoolVector<DescribedRegion>& regions, const std::vector<CompiledModel>& models,
+                                   const SceneTruth& truth)
     : image_(image), camera_(camera), regions_(regions), models_(models), truth_(truth), data_(image) {}
 
 const HypothesisTest& HypothesisTester::test(const Clique& clique) {
@@ -22,7 +22,7 @@ const HypothesisTest& HypothesisTester::test(const Clique& clique) {
 
 HypothesisTest HypothesisTester::run(const Clique& clique) const {
   const CompiledModel& model = models_[static_cast<std::size_t>(clique.model)];
-  std::vector<RegionFaceMatch> matches;
+  PoolVector<RegionFaceMatch> matches;
   for (const RegionAsFace& match : clique.matches) {
     matches.push_back(
         {&regions_[static_cast<std::size_t>(match.region)], &model.faces[static_cast<std::size_t>(match.face)]});
@@ -36,7 +36,8 @@ HypothesisTest HypothesisTester::run(const Clique& clique) const {
   if (!result.accepted) return result;
   result.right =
       clique.model == truth_.model && mssd(*truth_.object, pose, truth_.T_sensor_model) <= truth_.object->tolerance();
-  result.explained = explained_regions(model, pose, image_, regions_);
+  const PoolVector<int> explained = explained_regions(model, pose, image_, regions_);
+  result.explained.assign(explained.begin(), explained.end());
   return result;
 }
 

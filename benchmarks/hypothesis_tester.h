@@ -38,7 +38,7 @@ struct SceneTruth {
 class HypothesisTester {
  public:
   // Everything given must outlive the tester. REQUIRES: a data point in the image.
-  HypothesisTester(const RangeImage& image, const PinholeCamera& camera, const std::vector<DescribedRegion>& regions,
+  HypothesisTester(const RangeImage& image, const PinholeCamera& camera, const PoolVector<DescribedRegion>& regions,
                    const std::vector<CompiledModel>& models, const SceneTruth& truth);
 
   // Pose from the matches, localization and verification with the paper's thresholds (Section V), as recognize() does.
@@ -52,7 +52,7 @@ class HypothesisTester {
 
   const RangeImage& image_;
   const PinholeCamera& camera_;
-  const std::vector<DescribedRegion>& regions_;
+  const PoolVector<DescribedRegion>& regions_;
   const std::vector<CompiledModel>& models_;
   SceneTruth truth_;
   NearestDataPoint data_;

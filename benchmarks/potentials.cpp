@@ -74,7 +74,7 @@ class Lap {
 };
 
 void count_true_matches(const std::vector<RegionFace>& truth, int model, const Database& database,
-                        const HypothesisField& field, const std::vector<Label>& labels, Outcome& outcome) {
+                        const HypothesisField& field, const PoolVector<Label>& labels, Outcome& outcome) {
   outcome.true_matches = static_cast<long>(truth.size());
   for (std::size_t i = 0; i < field.matches.size(); ++i) {
     const Match& match = field.matches[i];
@@ -89,7 +89,7 @@ void count_true_matches(const std::vector<RegionFace>& truth, int model, const D
 }
 
 // model: the true one, in this database.
-Outcome run_setting(const Setting& setting, const Database& database, const std::vector<DescribedRegion>& regions,
+Outcome run_setting(const Setting& setting, const Database& database, const PoolVector<DescribedRegion>& regions,
                     const std::vector<RegionFace>& truth, int model) {
   const BackgroundOptions background = background_for(database.content().density);
   Outcome outcome;
@@ -99,8 +99,8 @@ Outcome run_setting(const Setting& setting, const Database& database, const std:
   outcome.field_ms = lap();
   if (!setting.unaries) std::fill(field.unary.begin(), field.unary.end(), std::array<double, 2>{0.0, 0.0});
   lap();
-  const std::vector<Label> labels = setting.pruning == Pruning::none ? std::vector<Label>(field.matches.size(), kOn)
-                                                                     : highest_confidence_first(field);
+  const PoolVector<Label> labels =
+      setting.pruning == Pruning::none ? PoolVector<Label>(field.matches.size(), kOn) : highest_confidence_first(field);
   outcome.labels_ms = lap();
   outcome.hypotheses = static_cast<long>(hypothesis_cliques(field, database, labels).size());
   outcome.cliques_ms = lap();

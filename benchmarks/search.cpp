@@ -38,7 +38,7 @@ using SearchResults = std::array<SearchResult, kSearches>;  // by Search
 struct SceneBench {
   const ModelSeries& series;
   const std::vector<CadGeometry>& geometry;  // of the series
-  const std::vector<DescribedRegion>& regions;
+  const PoolVector<DescribedRegion>& regions;
   HypothesisTester& tester;
   std::uint64_t seed = 0;  // of the random orders of this scene
   int most_tests = 0;
@@ -96,7 +96,7 @@ std::vector<SearchResults> run_scene(const SearchOptions& options, const ModelSe
                                      const Scene& scene, int index) {
   const int model = scene.objects.front().model;
   const SensorModel& sensor = series.settings.sensor;
-  const std::vector<DescribedRegion> regions =
+  const PoolVector<DescribedRegion> regions =
       extract_regions(scene.scan.image, sensor.camera, series.settings.segmentation);
   const ScoredObject object = scored_object(series.cads[static_cast<std::size_t>(model)]);
   HypothesisTester tester(scene.scan.image, sensor.camera, regions, series.models,

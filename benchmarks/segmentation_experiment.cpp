@@ -38,10 +38,11 @@ struct Segmenter {
 std::vector<Segmenter> segmenters_for(const SensorModel& sensor, const PinholeCamera& camera) {
   std::vector<Segmenter> segmenters;
   segmenters.push_back({"foresight", [camera, options = segmentation_options_for(sensor)](const RangeImage& image) {
-                          std::vector<Region> regions;
+                          PoolVector<Region> regions;
                           for (DescribedRegion& described : extract_regions(image, camera, options))
                             regions.push_back(std::move(described.region));
-                          return label_image(regions, image.size());
+                          const PoolVector<int> labels = label_image(regions, image.size());
+                          return LabelImage(labels.begin(), labels.end());
                         }});
 #ifdef FORESIGHT_RIVALS
   segmenters.push_back({"pcl", [](const RangeImage& image) { return pcl_planes(image); }});

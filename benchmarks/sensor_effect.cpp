@@ -45,7 +45,7 @@ struct TrueMatch {
 
 // A region's true match is with the face that most of its cells show.
 std::vector<TrueMatch> true_matches(const LabelledTrueScan& scan, const std::vector<CadModel>& models,
-                                    const std::vector<DescribedRegion>& regions) {
+                                    const PoolVector<DescribedRegion>& regions) {
   std::vector<FaceIndex> numbered;  // the faces of all objects, numbered through
   std::vector<int> first;
   for (const TrueObject& object : scan.scan.truth) {
@@ -66,7 +66,7 @@ std::vector<TrueMatch> true_matches(const LabelledTrueScan& scan, const std::vec
 }
 
 // Which of them have a likelihood above 0.
-std::vector<bool> kept_matches(const std::vector<TrueMatch>& truth, const std::vector<DescribedRegion>& regions,
+std::vector<bool> kept_matches(const std::vector<TrueMatch>& truth, const PoolVector<DescribedRegion>& regions,
                                const Database& database) {
   const auto matches = match_likelihoods(regions, database, background_for(database.content().density));
   std::vector<bool> kept;

@@ -28,11 +28,11 @@ struct Case {
   RangeImage image;
   const Database& database;
   NearestDataPoint data;
-  std::vector<DescribedRegion> regions;
-  std::vector<Match> matches;
+  PoolVector<DescribedRegion> regions;
+  PoolVector<Match> matches;
   HypothesisField field;
-  std::vector<Label> labels;
-  std::vector<ObjectHypothesis> hypotheses;
+  PoolVector<Label> labels;
+  PoolVector<ObjectHypothesis> hypotheses;
   ViewingSphere sphere{kAspectCells};
 
   Case(std::string case_name, const Scene& scene, const Database& objects)
@@ -61,7 +61,7 @@ std::vector<Trial> first_trials(const Case& scan) {
   std::vector<Trial> trials;
   for (const ObjectHypothesis& hypothesis : scan.hypotheses) {
     if (trials.size() == kTrials) break;
-    std::vector<RegionFaceMatch> matches;
+    PoolVector<RegionFaceMatch> matches;
     for (const int index : hypothesis.matches) {
       const Match& match = scan.field.matches[static_cast<std::size_t>(index)];
       matches.push_back({&scan.regions[static_cast<std::size_t>(match.region)], &scan.database.face(match.face)});

@@ -64,8 +64,8 @@ class Meetings {
   };
   [[nodiscard]] Entry& entry(int i) { return entries_[static_cast<std::size_t>(i)]; }
 
-  std::vector<int> first_;  // by the lower label: an entry, or -1
-  std::vector<Entry> entries_;
+  PoolVector<int> first_;  // by the lower label: an entry, or -1
+  PoolVector<Entry> entries_;
 };
 
 // The cell `steps` links away from a border, or -1 when that is another plane's. next: the way to go.
@@ -79,7 +79,7 @@ int some_way_inside(Growth& growth, int cell, int steps, Next&& next) {
   return cell;
 }
 
-Meetings find_meetings(Growth& growth, const std::vector<Contact>& contacts) {
+Meetings find_meetings(Growth& growth, const PoolVector<Contact>& contacts) {
   Meetings meetings(growth.found.planes.size());
   const CellConnectivity& links = growth.connectivity;
   const int steps = growth.options.seed_block;
@@ -147,12 +147,12 @@ bool belongs_to(const Growth& growth, int cell, int next, int own, int other, in
 }
 
 // Cells that either of two planes that meet could have, from their border inwards.
-std::vector<int> doubtful_cells(Growth& growth) {
+PoolVector<int> doubtful_cells(Growth& growth) {
   struct Doubt {
     int cell, other;
   };
-  std::vector<Doubt> doubts;
-  std::vector<char> doubtful(growth.found.labels.size(), 0);
+  PoolVector<Doubt> doubts;
+  PoolVector<char> doubtful(growth.found.labels.size(), 0);
   const auto doubt = [&](int cell, int other) {
     if (doubtful[static_cast<std::size_t>(cell)] != 0 || !growth.within_reach(cell, other)) return;
     doubtful[static_cast<std::size_t>(cell)] = 1;
@@ -168,7 +168,7 @@ std::vector<int> doubtful_cells(Growth& growth) {
       if (growth.label(next) == own) doubt(next, other);
     });
   }
-  std::vector<int> cells;
+  PoolVector<int> cells;
   cells.reserve(doubts.size());
   for (const Doubt& d : doubts) cells.push_back(d.cell);
   return cells;
@@ -177,17 +177,17 @@ std::vector<int> doubtful_cells(Growth& growth) {
 // Planes also cross where there is no crease, as that of a block's side does on the floor beside the block, and there
 // the data points cannot tell one from the other. So doubtful cells go to the plane whose undoubted cells are nearest.
 void share_out_doubtful_cells(Growth& growth) {
-  std::vector<int> doubtful = doubtful_cells(growth);
-  std::vector<double> doubted(growth.found.planes.size() + 1, 0.0);
+  PoolVector<int> doubtful = doubtful_cells(growth);
+  PoolVector<double> doubted(growth.found.planes.size() + 1, 0.0);
   for (const int cell : doubtful) ++doubted[static_cast<std::size_t>(growth.label(cell))];
   // A plane that is nearly all in doubt, like a thin face along a crease, keeps what it has.
-  std::vector<char> keeps_all(doubted.size(), 0);
+  PoolVector<char> keeps_all(doubted.size(), 0);
   for (std::size_t label = 1; label < doubted.size(); ++label) {
     keeps_all[label] = doubted[label] > 0.75 * growth.sums(static_cast<int>(label)).count() ? 1 : 0;
   }
   std::erase_if(doubtful, [&](int cell) { return keeps_all[static_cast<std::size_t>(growth.label(cell))] != 0; });
   for (const int cell : doubtful) growth.release(cell);
-  std::vector<int> front;
+  PoolVector<int> front;
   for (const int cell : doubtful) {
     growth.connectivity.for_each_neighbour(cell, [&](int next) {
       if (growth.label(next) != 0) front.push_back(next);
@@ -210,14 +210,14 @@ void settle_borders(const RangeImage& image, const CellConnectivity& connectivit
   Growth growth{image, connectivity, options, found};
   growth.measure_reach();
   share_out_doubtful_cells(growth);
-  const std::vector<Contact> contacts = contacts_of(growth.connectivity, growth.found.labels);
+  const PoolVector<Contact> contacts = contacts_of(growth.connectivity, growth.found.labels);
   const Meetings meetings = find_meetings(growth, contacts);
   // A border moves by as many cells as the patches that straddled it are wide, not farther: planes also cross where
   // there is no crease, as that of a block's side does on the floor beside the block.
   const auto farthest = static_cast<unsigned char>(options.seed_block);
-  std::vector<unsigned char> moved(found.labels.size(),
-                                   0);  // by cell: how far the border has come when it takes the cell
-  std::vector<int> border;
+  PoolVector<unsigned char> moved(found.labels.size(),
+                                  0);  // by cell: how far the border has come when it takes the cell
+  PoolVector<int> border;
   for (const auto& [cell, next] : contacts) border.insert(border.end(), {cell, next});
   for (std::size_t i = 0; i < border.size(); ++i) {  // grows while it is worked off
     const int cell = border[i];

@@ -78,7 +78,7 @@ class StepJudge {
 CellConnectivity::CellConnectivity(const Coordinates& points, const SegmentationOptions& options)
     : columns_(points.columns), gaps_(static_cast<std::size_t>(points.size()), 0) {
   const StepJudge judge(points, options);
-  std::vector<unsigned char> steps(static_cast<std::size_t>(columns_));
+  PoolVector<unsigned char> steps(static_cast<std::size_t>(columns_));
   for (int row = 0; row < points.rows; ++row) {
     const int first = row * columns_;
     judge.find_small_steps(first, columns_ - 1, 1, steps.data());

@@ -1,9 +1,8 @@
 // Which cells of a range image lie on one surface with their neighbours.
 #pragma once
 
-#include <vector>
-
 #include "common/coordinates.h"
+#include "common/memory_pool.h"
 #include "common/segmentation.h"
 
 namespace foresight {
@@ -53,7 +52,7 @@ class CellConnectivity {
   void link(int cell, int gap, int shift, int stride);
 
   int columns_;
-  std::vector<unsigned char> gaps_;  // by cell: cells to the connected neighbour each way, 0 = none
+  PoolVector<unsigned char> gaps_;  // by cell: cells to the connected neighbour each way, 0 = none
 };
 
 }  // namespace foresight

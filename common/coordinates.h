@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "common/cell_blocks.h"
+#include "common/memory_pool.h"
 #include "common/plane_fit.h"
 #include "common/range_image.h"
 
@@ -14,8 +14,8 @@ namespace foresight {
 struct Coordinates {
   int rows;
   int columns;
-  std::vector<float> x, y, z;  // by cell, NaN where it is invalid. Unit: mm.
-  float largest;               // absolute value. Unit: mm.
+  PoolVector<float> x, y, z;  // by cell, NaN where it is invalid. Unit: mm.
+  float largest;              // absolute value. Unit: mm.
 
   explicit Coordinates(const RangeImage& image);
 

@@ -10,11 +10,11 @@ double square(double x) { return x * x; }
 // Which blocks of the grid hold together with the one to the right and the one below: at least half of the facing cells
 // do.
 struct BlockLinks {
-  std::vector<char> right, down;  // by position
+  PoolVector<char> right, down;  // by position
 };
 
 BlockLinks link_blocks(const RangeImage& image, const CellConnectivity& connectivity, const Squares& blocks, int side) {
-  BlockLinks links{std::vector<char>(blocks.sums.size(), 0), std::vector<char>(blocks.sums.size(), 0)};
+  BlockLinks links{PoolVector<char>(blocks.sums.size(), 0), PoolVector<char>(blocks.sums.size(), 0)};
   for (int row = 0; row < blocks.rows; ++row) {
     for (int column = 0; column < blocks.columns; ++column) {
       const int last = side - 1;
@@ -64,7 +64,7 @@ Squares join_fours(const Squares& parts, int side, const BlockLinks& links, cons
 }
 
 // The largest squares first.
-void tile(const Squares& blocks, const std::vector<Squares>& joined, Patches& patches) {
+void tile(const Squares& blocks, const PoolVector<Squares>& joined, Patches& patches) {
   patches.patch_of.assign(blocks.sums.size(), -1);
   for (int level = static_cast<int>(joined.size()); level >= 0; --level) {
     const Squares& squares = level == 0 ? blocks : joined[static_cast<std::size_t>(level - 1)];
@@ -84,7 +84,7 @@ void tile(const Squares& blocks, const std::vector<Squares>& joined, Patches& pa
 }
 
 void find_touching(const Squares& blocks, const BlockLinks& links, Patches& patches) {
-  std::vector<std::pair<int, int>>& touching = patches.touching;
+  PoolVector<std::pair<int, int>>& touching = patches.touching;
   const auto touch = [&](std::size_t a, std::size_t b) {
     const int in_a = patches.patch_of[a];
     const int in_b = patches.patch_of[b];
@@ -134,7 +134,7 @@ Patches tile_with_squares(const RangeImage& image, const CellConnectivity& conne
                           const SegmentationOptions& options, const Squares& blocks) {
   const BlockLinks links = link_blocks(image, connectivity, blocks, options.seed_block);
   const double floor = 0.05 * square(options.plane_sigma);
-  std::vector<Squares> joined;  // by how often the side was doubled
+  PoolVector<Squares> joined;  // by how often the side was doubled
   const Squares* largest = &blocks;
   for (int side = 1; std::min(largest->rows, largest->columns) >= 2; side *= 2) {
     joined.push_back(join_fours(*largest, side, links, blocks, floor));

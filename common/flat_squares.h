@@ -2,8 +2,8 @@
 #pragma once
 
 #include <utility>
-#include <vector>
 
+#include "common/memory_pool.h"
 #include "common/patch_merging.h"
 
 namespace foresight {
@@ -23,8 +23,8 @@ namespace foresight {
 struct Squares {
   int rows = 0;
   int columns = 0;
-  std::vector<PointSums> sums;  // by position
-  std::vector<double> error;    // by position: mean squared distance from the own plane; negative: not flat
+  PoolVector<PointSums> sums;  // by position
+  PoolVector<double> error;    // by position: mean squared distance from the own plane; negative: not flat
 
   Squares(int rows_, int columns_)
       : rows(rows_),
@@ -36,9 +36,9 @@ struct Squares {
 
 // Patches of unequal size that tile the flat part of a grid of blocks, and which of them touch.
 struct Patches {
-  std::vector<PointSums> sums;                // by patch
-  std::vector<int> patch_of;                  // by block: patch, or -1
-  std::vector<std::pair<int, int>> touching;  // patches, the lower first; ascending
+  PoolVector<PointSums> sums;                // by patch
+  PoolVector<int> patch_of;                  // by block: patch, or -1
+  PoolVector<std::pair<int, int>> touching;  // patches, the lower first; ascending
 };
 
 // Nearly all cells valid, flat within the tolerance. Scanners drop single cells and columns.

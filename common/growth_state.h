@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/memory_pool.h"
 #include "common/patch_merging.h"
 
 namespace foresight {
@@ -13,7 +14,7 @@ struct Growth {
   const CellConnectivity& connectivity;
   const SegmentationOptions& options;
   PlaneLabels& found;
-  std::vector<double> reach_of = {};  // by plane
+  PoolVector<double> reach_of = {};  // by plane
 
   void measure_reach() {
     for (const Plane& plane : found.planes)

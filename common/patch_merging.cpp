@@ -11,10 +11,10 @@ namespace {
 
 // Sets of patches that have become one plane: a union-find forest in which the larger absorbs the smaller.
 struct Clusters {
-  std::vector<PointSums>& sums;  // by patch; of the whole cluster at its representative
-  std::vector<int> parent;       // by patch
+  PoolVector<PointSums>& sums;  // by patch; of the whole cluster at its representative
+  PoolVector<int> parent;       // by patch
 
-  explicit Clusters(std::vector<PointSums>& patches) : sums(patches), parent(patches.size()) {
+  explicit Clusters(PoolVector<PointSums>& patches) : sums(patches), parent(patches.size()) {
     for (std::size_t i = 0; i < parent.size(); ++i) parent[i] = static_cast<int>(i);
   }
   [[nodiscard]] PointSums& of(int representative) { return sums[static_cast<std::size_t>(representative)]; }
@@ -60,9 +60,9 @@ double relative_noise(const Plane& plane) {
   return std::max(kSideways, std::abs(plane.normal.z()));
 }
 
-std::vector<ReachTest> reach_tests(const Coordinates& points, const SegmentationOptions& options,
-                                   const std::vector<Plane>& planes) {
-  std::vector<ReachTest> tests;
+PoolVector<ReachTest> reach_tests(const Coordinates& points, const SegmentationOptions& options,
+                                  const PoolVector<Plane>& planes) {
+  PoolVector<ReachTest> tests;
   tests.reserve(planes.size());
   for (const Plane& plane : planes)
     tests.emplace_back(points, plane, options.grow_tolerance * options.plane_sigma * relative_noise(plane));
@@ -79,13 +79,13 @@ bool is_steady(const PointSums& sums, const Plane& plane, const SegmentationOpti
   return sums.count() * sums.narrow_spread() >= noise * noise;
 }
 
-std::vector<int> merge_best_first(std::vector<PointSums>& patches, const std::vector<std::pair<int, int>>& touching,
-                                  double largest_rms) {
+PoolVector<int> merge_best_first(PoolVector<PointSums>& patches, const PoolVector<std::pair<int, int>>& touching,
+                                 double largest_rms) {
   Clusters clusters(patches);
-  std::vector<Pair> pairs;
+  PoolVector<Pair> pairs;
   pairs.reserve(touching.size());
   for (const auto& [a, b] : touching) pairs.push_back(make_pair_of(clusters, a, b));
-  std::priority_queue<Pair, std::vector<Pair>, std::greater<>> queue(std::greater<>(), std::move(pairs));
+  std::priority_queue<Pair, PoolVector<Pair>, std::greater<>> queue(std::greater<>(), std::move(pairs));
   // Pairs whose clusters have grown since their error was computed are brought up to date when they come up, not
   // before: a cluster has as many pairs as its outline has patches, and most never come up again.
   while (!queue.empty()) {
@@ -113,7 +113,7 @@ std::vector<int> merge_best_first(std::vector<PointSums>& patches, const std::ve
 
 void merge_touching_planes(const CellConnectivity& connectivity, const SegmentationOptions& options,
                            PlaneLabels& found) {
-  std::vector<std::pair<int, int>> touching;
+  PoolVector<std::pair<int, int>> touching;
   for (const Contact& contact : contacts_of(connectivity, found.labels)) {
     const std::pair<int, int> pair = std::minmax(found.labels[static_cast<std::size_t>(contact.cell)] - 1,
                                                  found.labels[static_cast<std::size_t>(contact.next)] - 1);
@@ -121,10 +121,10 @@ void merge_touching_planes(const CellConnectivity& connectivity, const Segmentat
   }
   std::sort(touching.begin(), touching.end());
   touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
-  const std::vector<int> merged = merge_best_first(found.sums, touching, options.merge_tolerance * options.plane_sigma);
+  const PoolVector<int> merged = merge_best_first(found.sums, touching, options.merge_tolerance * options.plane_sigma);
 
-  std::vector<int> label_of(merged.size() + 1, 0);  // by old label
-  std::vector<PointSums> sums;
+  PoolVector<int> label_of(merged.size() + 1, 0);  // by old label
+  PoolVector<PointSums> sums;
   for (std::size_t i = 0; i < merged.size(); ++i) {
     if (merged[i] != static_cast<int>(i)) continue;
     sums.push_back(found.sums[i]);

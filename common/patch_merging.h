@@ -5,18 +5,18 @@
 #pragma once
 
 #include <utility>
-#include <vector>
 
 #include "common/cell_connectivity.h"
+#include "common/memory_pool.h"
 #include "common/plane_fit.h"
 
 namespace foresight {
 
 // Planes and which cells are theirs.
 struct PlaneLabels {
-  std::vector<int> labels;  // by cell: 0 = free, i + 1 = planes[i]
-  std::vector<Plane> planes;
-  std::vector<PointSums> sums;  // by plane: of its cells
+  PoolVector<int> labels;  // by cell: 0 = free, i + 1 = planes[i]
+  PoolVector<Plane> planes;
+  PoolVector<PointSums> sums;  // by plane: of its cells
 
   explicit PlaneLabels(int cells) : labels(static_cast<std::size_t>(cells), 0) {}
 };
@@ -26,8 +26,8 @@ struct PlaneLabels {
 [[nodiscard]] double relative_noise(const Plane& plane);
 
 // Which data points lie within the grow tolerance, by plane.
-[[nodiscard]] std::vector<ReachTest> reach_tests(const Coordinates& points, const SegmentationOptions& options,
-                                                 const std::vector<Plane>& planes);
+[[nodiscard]] PoolVector<ReachTest> reach_tests(const Coordinates& points, const SegmentationOptions& options,
+                                                const PoolVector<Plane>& planes);
 
 // Root mean square distance from the plane in standard deviations of the data points about it, squared; plane_sigma
 // = 1.
@@ -44,8 +44,8 @@ inline constexpr double kNormalAccuracy = 0.1;
 // the whole at that index afterwards.
 // touching: pairs that may merge. largest_rms: no part of a merged pair is farther than this (rms) from the common
 // plane, where that faces the sensor.
-[[nodiscard]] std::vector<int> merge_best_first(std::vector<PointSums>& patches,
-                                                const std::vector<std::pair<int, int>>& touching, double largest_rms);
+[[nodiscard]] PoolVector<int> merge_best_first(PoolVector<PointSums>& patches,
+                                               const PoolVector<std::pair<int, int>>& touching, double largest_rms);
 
 // Merges touching planes that fit one plane within the merge tolerance: pieces of one face that grew from apart.
 // Every plane must have at least three cells.

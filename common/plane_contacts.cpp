@@ -2,8 +2,8 @@
 
 namespace foresight {
 
-std::vector<Contact> contacts_of(const CellConnectivity& connectivity, const std::vector<int>& labels) {
-  std::vector<Contact> contacts;
+PoolVector<Contact> contacts_of(const CellConnectivity& connectivity, const PoolVector<int>& labels) {
+  PoolVector<Contact> contacts;
   const auto differs = [&](int cell, int next) {
     const int other = next < 0 ? 0 : labels[static_cast<std::size_t>(next)];
     if (other != 0 && other != labels[static_cast<std::size_t>(cell)]) contacts.push_back({cell, next});

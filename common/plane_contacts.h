@@ -1,9 +1,8 @@
 // Where planes touch in the image.
 #pragma once
 
-#include <vector>
-
 #include "common/cell_connectivity.h"
+#include "common/memory_pool.h"
 
 namespace foresight {
 
@@ -13,6 +12,6 @@ struct Contact {
 };
 
 // By cell, those to the right first. labels: by cell; 0 = of no plane.
-[[nodiscard]] std::vector<Contact> contacts_of(const CellConnectivity& connectivity, const std::vector<int>& labels);
+[[nodiscard]] PoolVector<Contact> contacts_of(const CellConnectivity& connectivity, const PoolVector<int>& labels);
 
 }  // namespace foresight

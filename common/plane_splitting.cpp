@@ -16,11 +16,8 @@ struct Run {
 // The runs of all planes, connected into pieces: a union-find forest whose roots are the first runs of the pieces.
 class RunForest {
  public:
-  RunForest(const CellConnectivity& connectivity, const std::vector<int>& labels)
-      : connectivity_(connectivity),
-        labels_(labels.data()),
-        columns_(connectivity.columns()),
-        run_of_(std::make_unique_for_overwrite<int[]>(labels.size())) {
+  RunForest(const CellConnectivity& connectivity, const PoolVector<int>& labels)
+      : connectivity_(connectivity), labels_(labels.data()), columns_(connectivity.columns()), run_of_(labels.size()) {
     const int cells = static_cast<int>(labels.size());
     for (int first = 0; first < cells; first += columns_) {
       visit_cells(
@@ -29,8 +26,8 @@ class RunForest {
   }
 
   // Numbers the pieces in the order of their first cells. Returns their sizes.
-  std::vector<int> number_pieces() {
-    std::vector<int> cells;
+  PoolVector<int> number_pieces() {
+    PoolVector<int> cells;
     for (std::size_t i = 0; i < runs_.size(); ++i) {  // a parent always comes before its children
       Run& run = runs_[i];
       if (run.piece == static_cast<int>(i)) {
@@ -43,7 +40,7 @@ class RunForest {
     }
     return cells;
   }
-  [[nodiscard]] const std::vector<Run>& runs() const { return runs_; }
+  [[nodiscard]] const PoolVector<Run>& runs() const { return runs_; }
 
  private:
   // Adds the cells of a block where there are none to add, or where they go on with the last run and lie below one run.
@@ -97,16 +94,16 @@ class RunForest {
   const CellConnectivity& connectivity_;
   const int* labels_;
   int columns_;
-  std::unique_ptr<int[]> run_of_;  // by cell; set where the cell is of a plane
-  std::vector<Run> runs_;
+  PoolVector<int> run_of_;  // by cell; set where the cell is of a plane
+  PoolVector<Run> runs_;
   int joined_ = -1;  // the run that the last one was joined with last, or itself
 };
 
 // By piece. The first piece of a plane, mostly all of it, has the sums of the plane less those of the other pieces.
-std::vector<PointSums> sums_of_pieces(const RangeImage& image, const std::vector<Run>& runs, std::size_t pieces,
-                                      const std::vector<PointSums>& sums_of_planes) {
-  std::vector<PointSums> sums(pieces);
-  std::vector<int> first_piece(sums_of_planes.size(), -1);
+PoolVector<PointSums> sums_of_pieces(const RangeImage& image, const PoolVector<Run>& runs, std::size_t pieces,
+                                     const PoolVector<PointSums>& sums_of_planes) {
+  PoolVector<PointSums> sums(pieces);
+  PoolVector<int> first_piece(sums_of_planes.size(), -1);
   for (const Run& run : runs) {
     const auto plane = static_cast<std::size_t>(run.label - 1);
     PointSums& own = sums[static_cast<std::size_t>(run.piece)];
@@ -129,11 +126,11 @@ std::vector<PointSums> sums_of_pieces(const RangeImage& image, const std::vector
 void split_planes(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
                   PlaneLabels& found) {
   RunForest forest(connectivity, found.labels);
-  const std::vector<int> cells = forest.number_pieces();
-  const std::vector<PointSums> sums = sums_of_pieces(image, forest.runs(), cells.size(), found.sums);
+  const PoolVector<int> cells = forest.number_pieces();
+  const PoolVector<PointSums> sums = sums_of_pieces(image, forest.runs(), cells.size(), found.sums);
   found.planes.clear();
   found.sums.clear();
-  std::vector<int> label_of(sums.size(), 0);
+  PoolVector<int> label_of(sums.size(), 0);
   for (std::size_t piece = 0; piece < sums.size(); ++piece) {
     if (cells[piece] < options.smallest_region) continue;
     const Plane plane = sums[piece].fit();

@@ -1,11 +1,11 @@
 // The range image: a grid of (x, y, z) with holes, as a light-stripe range finder delivers it (Section VI, last part).
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
-#include <vector>
 
-#include <Eigen/Core>
+#include "common/memory_pool.h"
 
 namespace foresight {
 
@@ -16,7 +16,7 @@ inline constexpr int kLargestImageSide = 4096;
 struct RangeImage {
   int rows = 0;
   int columns = 0;
-  std::vector<Eigen::Vector3f> points;  // row by row, size rows*columns; an invalid cell has NaN in all three
+  PoolVector<Eigen::Vector3f> points;  // row by row, size rows*columns; an invalid cell has NaN in all three
 
   RangeImage() = default;
   // An image of invalid cells.

@@ -23,7 +23,7 @@ PlaneAxes axes_of(const Eigen::Vector3d& normal) {
 // The rays of an image's cells: a camera's, by column and row.
 struct CellRays {
   const PinholeCamera& camera;
-  std::vector<double> across, down;
+  PoolVector<double> across, down;
   double longest = 1.0;  // of the rays, scaled so that z = 1
 
   explicit CellRays(const PinholeCamera& of) : camera(of) {
@@ -36,14 +36,14 @@ struct CellRays {
 };
 
 // Andrew's monotone chain; counter-clockwise, no collinear points.
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+PoolVector<Eigen::Vector2d> convex_hull(PoolVector<Eigen::Vector2d> points) {
   const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
   };
   std::sort(points.begin(), points.end(), before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
-  std::vector<Eigen::Vector2d> hull;
+  PoolVector<Eigen::Vector2d> hull;
   const auto turn = [&](const Eigen::Vector2d& p) {
     const Eigen::Vector2d a = hull[hull.size() - 1] - hull[hull.size() - 2];
     const Eigen::Vector2d b = p - hull[hull.size() - 1];
@@ -62,7 +62,7 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
-double diameter(const std::vector<Eigen::Vector2d>& hull) {
+double diameter(const PoolVector<Eigen::Vector2d>& hull) {
   double largest = 0.0;
   for (std::size_t i = 0; i < hull.size(); ++i) {
     for (std::size_t j = i + 1; j < hull.size(); ++j) largest = std::max(largest, (hull[i] - hull[j]).squaredNorm());
@@ -75,7 +75,7 @@ struct Patch {
   double area = 0.0;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();       // first moments
   Eigen::Vector3d products = Eigen::Vector3d::Zero();  // second moments: of xx, xy, yy
-  std::vector<Eigen::Vector2d> outline;                // points with the convex hull of all
+  PoolVector<Eigen::Vector2d> outline;                 // points with the convex hull of all
 
   void add(const Eigen::Vector2d& p, double cell_area) {
     const Eigen::Vector2d weighted = cell_area * p;
@@ -94,7 +94,7 @@ class Projector {
 
   Patch project() {
     Patch patch;
-    const std::vector<int>& cells = region_.cells;
+    const PoolVector<int>& cells = region_.cells;
     for (std::size_t first = 0, end = 0; first < cells.size(); first = end) {
       const int row = cells[first] / image_.columns;
       const int next_row = (row + 1) * image_.columns;
@@ -180,7 +180,7 @@ class Projector {
   const CellRays& rays_;
   const PlaneAxes& axes_;
   Eigen::Vector3d origin_;
-  std::vector<double> span_;  // by cell: along u, along v, areas
+  PoolVector<double> span_;  // by cell: along u, along v, areas
 };
 
 DescribedRegion describe(Region region, const RangeImage& image, const CellRays& rays) {
@@ -192,7 +192,7 @@ DescribedRegion describe(Region region, const RangeImage& image, const CellRays&
   covariance << second.x(), second.y(), second.y(), second.z();
   covariance -= mean * mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
-  const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(patch.outline));
+  const PoolVector<Eigen::Vector2d> hull = convex_hull(std::move(patch.outline));
   const auto lift = [&](const Eigen::Vector2d& p) {
     return Eigen::Vector3d(region.offset * region.normal + p.x() * axes.u + p.y() * axes.v);
   };
@@ -214,12 +214,12 @@ DescribedRegion describe(Region region, const RangeImage& image, const PinholeCa
   return describe(std::move(region), image, CellRays(camera));
 }
 
-std::vector<DescribedRegion> extract_regions(const RangeImage& image, const PinholeCamera& camera,
-                                             const SegmentationOptions& options, const Stop& stop) {
-  std::vector<Region> regions = segment(image, options, stop);
-  const std::vector<double> cut = cut_shares(regions, image, camera);
+PoolVector<DescribedRegion> extract_regions(const RangeImage& image, const PinholeCamera& camera,
+                                            const SegmentationOptions& options, const Stop& stop) {
+  PoolVector<Region> regions = segment(image, options, stop);
+  const PoolVector<double> cut = cut_shares(regions, image, camera);
   const CellRays rays(camera);
-  std::vector<DescribedRegion> described;
+  PoolVector<DescribedRegion> described;
   described.reserve(regions.size());
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (stop && stop()) return {};

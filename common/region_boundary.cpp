@@ -10,7 +10,7 @@ namespace {
 // Finds the boundaries of all regions on one way through the image, and what lies across them.
 class BoundaryReader {
  public:
-  BoundaryReader(const std::vector<Region>& regions, const RangeImage& image, const PinholeCamera& camera,
+  BoundaryReader(const PoolVector<Region>& regions, const RangeImage& image, const PinholeCamera& camera,
                  const BoundaryOptions& options)
       : regions_(regions),
         image_(image),
@@ -19,13 +19,13 @@ class BoundaryReader {
         labels_(label_image(regions, image.size())),
         boundaries_(regions.size() + 1) {}
 
-  [[nodiscard]] std::vector<double> cut_shares() {
-    std::vector<int> above(static_cast<std::size_t>(image_.columns), -1);  // by column: the last cell of a region
+  [[nodiscard]] PoolVector<double> cut_shares() {
+    PoolVector<int> above(static_cast<std::size_t>(image_.columns), -1);  // by column: the last cell of a region
     for (int row = 0; row < image_.rows; ++row) read_row(row, above);
     for (const int last : above) {
       if (last >= 0) look(last, -1, last + image_.columns < image_.size());
     }
-    std::vector<double> shares;
+    PoolVector<double> shares;
     for (std::size_t label = 1; label < boundaries_.size(); ++label) shares.push_back(boundaries_[label].cut_share());
     return shares;
   }
@@ -40,7 +40,7 @@ class BoundaryReader {
 
   [[nodiscard]] int label(int cell) const { return labels_[static_cast<std::size_t>(cell)]; }
 
-  void read_row(int row, std::vector<int>& above) {
+  void read_row(int row, PoolVector<int>& above) {
     const int first = image_.cell(row, 0);
     const int end = first + image_.columns;
     int before = -1;
@@ -93,18 +93,18 @@ class BoundaryReader {
     return gap && depth < plane_depth + tolerance;
   }
 
-  const std::vector<Region>& regions_;
+  const PoolVector<Region>& regions_;
   const RangeImage& image_;
   const PinholeCamera& camera_;
   const BoundaryOptions& options_;
-  std::vector<int> labels_;
-  std::vector<Boundary> boundaries_;  // by label
+  PoolVector<int> labels_;
+  PoolVector<Boundary> boundaries_;  // by label
 };
 
 }  // namespace
 
-std::vector<double> cut_shares(const std::vector<Region>& regions, const RangeImage& image, const PinholeCamera& camera,
-                               const BoundaryOptions& options) {
+PoolVector<double> cut_shares(const PoolVector<Region>& regions, const RangeImage& image, const PinholeCamera& camera,
+                              const BoundaryOptions& options) {
   return BoundaryReader(regions, image, camera, options).cut_shares();
 }
 

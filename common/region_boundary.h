@@ -4,9 +4,8 @@
 // face of each partly hidden region, because its area has no probability.
 #pragma once
 
-#include <vector>
-
 #include "common/camera.h"
+#include "common/memory_pool.h"
 #include "common/range_image.h"
 #include "common/segmentation.h"
 
@@ -21,7 +20,7 @@ struct BoundaryOptions {
 // region's plane (something hides it, or throws a shadow on it), on it (one face in two parts), or there is none
 // because the image ends there. Elsewhere the face ends: what lies beyond is farther away, or another surface that
 // meets it.
-[[nodiscard]] std::vector<double> cut_shares(const std::vector<Region>& regions, const RangeImage& image,
-                                             const PinholeCamera& camera, const BoundaryOptions& options = {});
+[[nodiscard]] PoolVector<double> cut_shares(const PoolVector<Region>& regions, const RangeImage& image,
+                                            const PinholeCamera& camera, const BoundaryOptions& options = {});
 
 }  // namespace foresight

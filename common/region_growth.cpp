@@ -42,12 +42,12 @@ class GrowthQueue {
   static constexpr std::size_t kBuckets = 64;
   std::size_t first_ = kBuckets;
   std::array<int, kBuckets> latest_;  // by bucket: index of the entry pushed last, or -1
-  std::vector<Entry> entries_;
+  PoolVector<Entry> entries_;
 };
 
 // Sums without the cells beside other planes or none. By plane.
-std::vector<PointSums> sums_of_inner_cells(const Coordinates& points, const PlaneLabels& found) {
-  std::vector<PointSums> inner = found.sums;
+PoolVector<PointSums> sums_of_inner_cells(const Coordinates& points, const PlaneLabels& found) {
+  PoolVector<PointSums> inner = found.sums;
   const int* labels = found.labels.data();
   const int columns = points.columns;
   const int cells = points.size();
@@ -63,7 +63,7 @@ std::vector<PointSums> sums_of_inner_cells(const Coordinates& points, const Plan
 }
 
 void fit_inner_cells(const Coordinates& points, const SegmentationOptions& options, PlaneLabels& found) {
-  const std::vector<PointSums> inner = sums_of_inner_cells(points, found);
+  const PoolVector<PointSums> inner = sums_of_inner_cells(points, found);
   for (std::size_t i = 0; i < inner.size(); ++i) {
     if (found.sums[i].count() >= 3.0) found.planes[i] = found.sums[i].fit();
     if (inner[i].count() < options.smallest_region) continue;
@@ -109,7 +109,7 @@ void grow_planes(const RangeImage& image, const CellConnectivity& connectivity, 
 
 void refit_planes(const Coordinates& points, const SegmentationOptions& options, PlaneLabels& found) {
   fit_inner_cells(points, options, found);
-  const std::vector<ReachTest> within_reach = reach_tests(points, options, found.planes);
+  const PoolVector<ReachTest> within_reach = reach_tests(points, options, found.planes);
   const int* labels = found.labels.data();
   const auto keeps_all = [&](int block) {
     const int own = labels[block];

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,7 @@ void write_depth_png(const std::string& file, const RangeImage& image, double de
 void write_camera_json(const std::string& file, const PinholeCamera& camera, double depth_scale);
 
 // Label image, 8-bit when every label fits, else 16-bit grey. labels: rows*columns, each in 0..65535.
-void write_label_png(const std::string& file, int rows, int columns, const std::vector<int>& labels);
+void write_label_png(const std::string& file, int rows, int columns, std::span<const int> labels);
 
 // Pictures for eyes: 8-bit RGB, three bytes a pixel, row by row.
 void write_rgb_png(const std::string& file, int rows, int columns, const std::vector<unsigned char>& rgb);

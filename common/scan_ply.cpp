@@ -228,7 +228,7 @@ RangeImage scan_format::read_ply(const std::string& file, std::string_view bytes
     }
   }
   if (!with_grid) {
-    image.points = std::move(*vertices);
+    image.points.assign(vertices->begin(), vertices->end());
     return image;
   }
   for (std::size_t cell = 0; cell < grid->size(); ++cell) {

@@ -121,7 +121,7 @@ void write_png(const std::string& file, const Layout& layout, std::string pixels
 }
 
 // 16 bits a value where one needs it.
-void write_grey(const std::string& file, int rows, int columns, const std::vector<int>& values, int bits) {
+void write_grey(const std::string& file, int rows, int columns, std::span<const int> values, int bits) {
   std::string pixels;
   pixels.reserve(values.size() * static_cast<std::size_t>(bits / 8));
   for (const int value : values) {
@@ -203,7 +203,7 @@ void write_depth_png(const std::string& file, const RangeImage& image, double de
   write_grey(file, image.rows, image.columns, counts, 16);
 }
 
-void write_label_png(const std::string& file, int rows, int columns, const std::vector<int>& labels) {
+void write_label_png(const std::string& file, int rows, int columns, std::span<const int> labels) {
   assert(rows > 0 && columns > 0);
   assert(labels.size() == static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns));
   const auto [low, high] = std::minmax_element(labels.begin(), labels.end());

@@ -8,7 +8,7 @@ namespace foresight {
 namespace {
 
 // Whether the four blocks around one are of the same plane; beyond the grid there is no other plane.
-bool inside(const Squares& blocks, const std::vector<int>& plane_of, int row, int column) {
+bool inside(const Squares& blocks, const PoolVector<int>& plane_of, int row, int column) {
   const int own = plane_of[blocks.at(row, column)];
   const auto same = [&](int r, int c) {
     return r < 0 || c < 0 || r >= blocks.rows || c >= blocks.columns || plane_of[blocks.at(r, c)] == own;
@@ -17,7 +17,7 @@ bool inside(const Squares& blocks, const std::vector<int>& plane_of, int row, in
 }
 
 // Labels the cells of blocks, by block: plane or -1.
-void label_blocks(const RangeImage& image, const Squares& blocks, int side, const std::vector<int>& plane_of,
+void label_blocks(const RangeImage& image, const Squares& blocks, int side, const PoolVector<int>& plane_of,
                   PlaneLabels& found) {
   for (int row = 0; row < blocks.rows; ++row) {
     for (int column = 0; column < blocks.columns; ++column) {
@@ -39,13 +39,12 @@ int fewest_cells(const SegmentationOptions& options, int side) {
 }
 
 // Numbers the merged planes that are large enough from `first` on. By patch; -1 = too small.
-std::vector<int> number_planes(const std::vector<int>& merged, const std::vector<PointSums>& sums, int fewest,
-                               int first) {
-  std::vector<int> plane_of(merged.size(), -1);
+PoolVector<int> number_planes(const PoolVector<int>& merged, const PoolVector<PointSums>& sums, int fewest, int first) {
+  PoolVector<int> plane_of(merged.size(), -1);
   for (std::size_t patch = 0; patch < merged.size(); ++patch) {
     if (merged[patch] == static_cast<int>(patch) && sums[patch].count() >= fewest) plane_of[patch] = first++;
   }
-  std::vector<int> numbered(merged.size());
+  PoolVector<int> numbered(merged.size());
   for (std::size_t patch = 0; patch < merged.size(); ++patch)
     numbered[patch] = plane_of[static_cast<std::size_t>(merged[patch])];
   return numbered;
@@ -58,16 +57,16 @@ void fit_planes_from(std::size_t first, PlaneLabels& found) {
 
 // Windows of free cells, and the cells they cover.
 struct Windows {
-  std::vector<PointSums> patches;
-  std::vector<int> patch_of;  // by cell, -1 = none
-  std::vector<int> covered;   // cells, window by window
+  PoolVector<PointSums> patches;
+  PoolVector<int> patch_of;  // by cell, -1 = none
+  PoolVector<int> covered;   // cells, window by window
 };
 
 Windows flat_windows(const RangeImage& image, const SegmentationOptions& options, int side, const PlaneLabels& found) {
-  Windows windows{{}, std::vector<int>(found.labels.size(), -1), {}};
+  Windows windows{{}, PoolVector<int>(found.labels.size(), -1), {}};
   const double flat = largest_rms(options) * largest_rms(options);
   // By cell: side of the largest square of free cells that ends there.
-  std::vector<unsigned char> room(found.labels.size(), 0);
+  PoolVector<unsigned char> room(found.labels.size(), 0);
   for (int row = 0; row < image.rows; ++row) {
     for (int column = 0; column < image.columns; ++column) {
       const int cell = image.cell(row, column);
@@ -95,8 +94,8 @@ Windows flat_windows(const RangeImage& image, const SegmentationOptions& options
   return windows;
 }
 
-std::vector<std::pair<int, int>> touching_windows(const CellConnectivity& connectivity, const Windows& windows) {
-  std::vector<std::pair<int, int>> touching;
+PoolVector<std::pair<int, int>> touching_windows(const CellConnectivity& connectivity, const Windows& windows) {
+  PoolVector<std::pair<int, int>> touching;
   for (const int cell : windows.covered) {
     for (const int next : {connectivity.right(cell), connectivity.down(cell)}) {
       if (next < 0) continue;
@@ -117,16 +116,16 @@ void seed_on_grid(const RangeImage& image, const CellConnectivity& connectivity,
   const int side = options.seed_block;
   const Squares blocks = flat_blocks(image, options);
   Patches patches = tile_with_squares(image, connectivity, options, blocks);
-  const std::vector<int> merged = merge_best_first(patches.sums, patches.touching, largest_rms(options));
-  const std::vector<int> plane_of_patch = number_planes(merged, patches.sums, fewest_cells(options, side), 0);
+  const PoolVector<int> merged = merge_best_first(patches.sums, patches.touching, largest_rms(options));
+  const PoolVector<int> plane_of_patch = number_planes(merged, patches.sums, fewest_cells(options, side), 0);
 
-  std::vector<int> plane_of(blocks.sums.size(), -1);
+  PoolVector<int> plane_of(blocks.sums.size(), -1);
   for (std::size_t at = 0; at < plane_of.size(); ++at) {
     if (patches.patch_of[at] >= 0) plane_of[at] = plane_of_patch[static_cast<std::size_t>(patches.patch_of[at])];
   }
   const int planes = plane_of.empty() ? 0 : *std::max_element(plane_of.begin(), plane_of.end()) + 1;
-  std::vector<char> is_inside(plane_of.size(), 0);
-  std::vector<int> blocks_inside(static_cast<std::size_t>(planes), 0);
+  PoolVector<char> is_inside(plane_of.size(), 0);
+  PoolVector<int> blocks_inside(static_cast<std::size_t>(planes), 0);
   for (int row = 0; row < blocks.rows; ++row) {
     for (int column = 0; column < blocks.columns; ++column) {
       const std::size_t at = blocks.at(row, column);
@@ -150,9 +149,9 @@ void seed_between(const RangeImage& image, const CellConnectivity& connectivity,
                   int side, PlaneLabels& found) {
   Windows windows = flat_windows(image, options, side, found);
   const std::size_t before = found.planes.size();
-  const std::vector<int> merged =
+  const PoolVector<int> merged =
       merge_best_first(windows.patches, touching_windows(connectivity, windows), largest_rms(options));
-  const std::vector<int> plane_of =
+  const PoolVector<int> plane_of =
       number_planes(merged, windows.patches, fewest_cells(options, side), static_cast<int>(before));
   found.sums.resize(static_cast<std::size_t>(
       1 + std::max(static_cast<int>(before) - 1,

@@ -15,8 +15,7 @@
 namespace foresight {
 namespace {
 
-// From seeds to planes grown to their borders.
-// Whether it came to its end.
+// From seeds to planes grown to their borders. Whether it came to its end.
 bool finish_round(const RangeImage& image, const Coordinates& points, const CellConnectivity& connectivity,
                   const SegmentationOptions& options, PlaneLabels& found, const Stop& stop) {
   const auto grow = [&] { grow_planes(image, connectivity, options, found); };
@@ -24,24 +23,31 @@ bool finish_round(const RangeImage& image, const Coordinates& points, const Cell
   const auto refit = [&] { refit_planes(points, options, found); };
   const auto split = [&] { split_planes(image, connectivity, options, found); };
   const auto merge = [&] { merge_touching_planes(connectivity, options, found); };
-  for (const std::function<void()>& step :
-       std::initializer_list<std::function<void()>>{grow, settle, refit, split, merge, settle, refit, grow}) {
-    if (stop && stop()) return false;
-    step();
-  }
-  return true;
+  bool whole = true;
+  const auto unless_stopped = [&](const auto& step) {
+    whole = whole && !(stop && stop());
+    if (whole) step();
+  };
+  unless_stopped(grow);
+  unless_stopped(settle);
+  unless_stopped(refit);
+  unless_stopped(split);
+  unless_stopped(merge);
+  unless_stopped(settle);
+  unless_stopped(refit);
+  unless_stopped(grow);
+  return whole;
 }
 
 // Regions of the planes' cells, without those that the last fit has put out of reach.
-std::vector<Region> regions_of(const Coordinates& points, const SegmentationOptions& options,
-                               const PlaneLabels& found) {
-  std::vector<Region> regions(found.planes.size());
+PoolVector<Region> regions_of(const Coordinates& points, const SegmentationOptions& options, const PlaneLabels& found) {
+  PoolVector<Region> regions(found.planes.size());
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const Plane& plane = found.planes[i];
     regions[i] = {{}, plane.normal, plane.offset, std::sqrt(found.sums[i].mean_squared_distance(plane))};
     regions[i].cells.reserve(static_cast<std::size_t>(found.sums[i].count()));
   }
-  const std::vector<ReachTest> within_reach = reach_tests(points, options, found.planes);
+  const PoolVector<ReachTest> within_reach = reach_tests(points, options, found.planes);
   const int* labels = found.labels.data();
   const auto take_block = [&](int first) {
     const int label = labels[first];
@@ -97,7 +103,7 @@ SegmentationOptions segmentation_options_for(const SensorModel& sensor) {
   return options;
 }
 
-std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& options, const Stop& stop) {
+PoolVector<Region> segment(const RangeImage& image, const SegmentationOptions& options, const Stop& stop) {
   const auto stopped = [&stop] { return stop && stop(); };
   const Coordinates points(image);
   const CellConnectivity connectivity(points, options);
@@ -112,15 +118,15 @@ std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& 
   split_planes(image, connectivity, options, found);
   if (stopped()) return {};
 
-  std::vector<Region> regions = regions_of(points, options, found);
+  PoolVector<Region> regions = regions_of(points, options, found);
   std::sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) {
     return a.cells.size() != b.cells.size() ? a.cells.size() > b.cells.size() : a.cells.front() < b.cells.front();
   });
   return regions;
 }
 
-std::vector<int> label_image(const std::vector<Region>& regions, int cells) {
-  std::vector<int> labels(static_cast<std::size_t>(cells), 0);
+PoolVector<int> label_image(const PoolVector<Region>& regions, int cells) {
+  PoolVector<int> labels(static_cast<std::size_t>(cells), 0);
   for (std::size_t i = 0; i < regions.size(); ++i) {
     for (const int cell : regions[i].cells) labels[static_cast<std::size_t>(cell)] = static_cast<int>(i) + 1;
   }

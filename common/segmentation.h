@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <vector>
 
+#include "common/memory_pool.h"
 #include "common/range_image.h"
 #include "common/sensor_model.h"
 
@@ -32,7 +32,7 @@ void check(const SegmentationOptions& options);
 
 // A planar patch of the image.
 struct Region {
-  std::vector<int> cells;                            // ascending cell indices
+  PoolVector<int> cells;                             // ascending cell indices
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // unit, towards the sensor
   double offset = 0.0;  // normal . p = offset for p on the plane. Unit: mm. Negative: the sensor is in front.
   double rms = 0.0;     // root mean square distance of the data points. Unit: mm.
@@ -42,10 +42,10 @@ struct Region {
 using Stop = std::function<bool()>;
 
 // Deterministic; regions ordered by size, largest first (ties: lowest first cell). Stopped: no regions.
-[[nodiscard]] std::vector<Region> segment(const RangeImage& image, const SegmentationOptions& options,
-                                          const Stop& stop = {});
+[[nodiscard]] PoolVector<Region> segment(const RangeImage& image, const SegmentationOptions& options,
+                                         const Stop& stop = {});
 
 // 0 = no region, i + 1 = regions[i]. Size: image cells.
-[[nodiscard]] std::vector<int> label_image(const std::vector<Region>& regions, int cells);
+[[nodiscard]] PoolVector<int> label_image(const PoolVector<Region>& regions, int cells);
 
 }  // namespace foresight

@@ -5,7 +5,8 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <vector>
+
+#include "common/memory_pool.h"
 
 namespace foresight {
 
@@ -22,8 +23,8 @@ class ViewingSphere {
 
  private:
   using Sides = std::array<Eigen::Vector3d, 3>;  // of a triangle: planes through the origin, normals inward
-  std::vector<std::vector<Sides>> levels_;       // levels_[0]: the 20 triangles of the icosahedron
-  std::vector<Eigen::Vector3d> centres_;
+  PoolVector<PoolVector<Sides>> levels_;         // levels_[0]: the 20 triangles of the icosahedron
+  PoolVector<Eigen::Vector3d> centres_;
 };
 
 }  // namespace foresight

@@ -159,11 +159,10 @@ CompiledModel drawable(const CadModel& cad) {
 class SceneTeacher {
  public:
   SceneTeacher(const Database& database, const Cast& cast, const Scene& scene,
-               const std::vector<DescribedRegion>& regions)
+               const PoolVector<DescribedRegion>& regions)
       : model_(database.models().front()),
-        context_{scene.scan.image, database.content().sensor.camera, database, regions,
-                 std::make_unique<NearestDataCell>(scene.scan.image, database.content().sensor.camera,
-                                                   judging_options(database.content().sensor).stride)},
+        data_(scene.scan.image, database.content().sensor.camera, judging_options(database.content().sensor).stride),
+        context_{scene.scan.image, database.content().sensor.camera, database, regions, data_},
         labelled_(label_scan(scene.scan.image, context_.camera, database.content().sensor, regions)),
         settling_(database, labelled_, settling_options(labelled_.sensor)) {
     for (const SceneObject& object : scene.objects) {
@@ -182,7 +181,7 @@ class SceneTeacher {
       learn(displaced(model_, *truth_, 0.05 * model_.diameter, 3.0, random));   // turned round
     }
     StartSearchCounts counts;
-    const std::vector<StartPose> starts = find_starts(context_.database, labelled_, {}, counts);
+    const PoolVector<StartPose> starts = find_starts(context_.database, labelled_, {}, counts);
     // The best looking right ones and the best looking wrong ones: what recognition will have to tell apart.
     std::vector<std::size_t> wrong;
     int near = 0;
@@ -212,7 +211,7 @@ class SceneTeacher {
 
   // Half of them the best looking, half those that evidence speaks for most: an object hidden for the most part does
   // not look like much, but what is seen of it may fit well by chance.
-  void learn_wrong(const std::vector<StartPose>& starts, const std::vector<std::size_t>& wrong, int most) {
+  void learn_wrong(const PoolVector<StartPose>& starts, const std::vector<std::size_t>& wrong, int most) {
     const std::size_t half = std::min(wrong.size(), static_cast<std::size_t>(most / 2));
     for (std::size_t i = 0; i < half; ++i) learn(starts[wrong[i]].T_sensor_model);
     std::vector<std::pair<double, std::size_t>> spoken_for;
@@ -250,6 +249,7 @@ class SceneTeacher {
   }
 
   const CompiledModel& model_;
+  NearestDataCell data_;
   ScanContext context_;
   LabelledScan labelled_;
   PoseChecker settling_;

@@ -1,10 +1,10 @@
 #include "compiler/face_samples.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <atomic>
 #include <numbers>
-
-#include <tbb/parallel_for.h>
 
 #include "common/viewing_sphere.h"
 
@@ -12,8 +12,10 @@ namespace foresight {
 namespace {
 
 // The model alone, centred on the optical axis, seen from one direction: distance and turn about the axis are drawn, so
-// that the grid meets the faces at every angle. The paper states one distance; a sensor of one distance gives just that.
-SimulatedScan view_scan(const CadModel& model, const Eigen::Vector3d& direction, const SensorModel& sensor, Random random) {
+// that the grid meets the faces at every angle. The paper states one distance; a sensor of one distance gives just
+// that.
+SimulatedScan view_scan(const CadModel& model, const Eigen::Vector3d& direction, const SensorModel& sensor,
+                        Random random) {
   const double distance = random.uniform(sensor.nearest_distance, sensor.farthest_distance);
   const double roll = random.uniform(0.0, 2.0 * std::numbers::pi);
   const Eigen::Vector3d centre = 0.5 * (model.lowest() + model.highest());
@@ -23,15 +25,15 @@ SimulatedScan view_scan(const CadModel& model, const Eigen::Vector3d& direction,
 
 }  // namespace
 
-std::vector<RegionFace> pair_regions_with_faces(const std::vector<DescribedRegion>& regions,
+std::vector<RegionFace> pair_regions_with_faces(const PoolVector<DescribedRegion>& regions,
                                                 const std::vector<CellLabel>& labels, double smallest_share) {
   std::vector<RegionFace> pairs;
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    const std::vector<int>& cells = regions[i].region.cells;
+    const PoolVector<int>& cells = regions[i].region.cells;
     std::map<int, int> votes;
     for (const int cell : cells) ++votes[labels[static_cast<std::size_t>(cell)].face];
-    const auto most = std::max_element(votes.begin(), votes.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto most =
+        std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     if (most == votes.end() || most->first < 0) continue;
     if (most->second >= smallest_share * static_cast<double>(cells.size())) {
       pairs.push_back({static_cast<int>(i), most->first});
@@ -40,7 +42,7 @@ std::vector<RegionFace> pair_regions_with_faces(const std::vector<DescribedRegio
   return pairs;
 }
 
-ViewSample view_sample(const std::vector<DescribedRegion>& regions, const std::vector<RegionFace>& paired) {
+ViewSample view_sample(const PoolVector<DescribedRegion>& regions, const std::vector<RegionFace>& paired) {
   ViewSample sample;
   for (std::size_t i = 0; i < paired.size(); ++i) {
     const DescribedRegion& region = regions[static_cast<std::size_t>(paired[i].region)];

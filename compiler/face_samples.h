@@ -23,26 +23,32 @@ struct RegionFace {
 };
 
 // Regions of which no face holds at least `smallest_share` of the cells are paired with none.
-[[nodiscard]] std::vector<RegionFace> pair_regions_with_faces(const std::vector<DescribedRegion>& regions,
+[[nodiscard]] std::vector<RegionFace> pair_regions_with_faces(const PoolVector<DescribedRegion>& regions,
                                                               const std::vector<CellLabel>& labels,
                                                               double smallest_share = 0.5);
 
 struct FaceSampleOptions {
-  int views = 320;             // of ViewingSphere. Limit: 20*4^k.
-  std::uint64_t seed = 1;      // of noise, distance and roll; view i uses its own stream
+  int views = 320;         // of ViewingSphere. Limit: 20*4^k.
+  std::uint64_t seed = 1;  // of noise, distance and roll; view i uses its own stream
 };
 
 // What one view shows.
 struct ViewSample {
-  struct FaceObservation { int face; AttributeVector attributes; };
-  struct PairObservation { int first; int second; RelationVector relations; };  // first < second
+  struct FaceObservation {
+    int face;
+    AttributeVector attributes;
+  };
+  struct PairObservation {
+    int first;
+    int second;
+    RelationVector relations;
+  };  // first < second
   std::vector<FaceObservation> faces;
   std::vector<PairObservation> pairs;
 };
 
 // The faces and pairs of faces that regions of one image show, given which region shows which face.
-[[nodiscard]] ViewSample view_sample(const std::vector<DescribedRegion>& regions,
-                                     const std::vector<RegionFace>& paired);
+[[nodiscard]] ViewSample view_sample(const PoolVector<DescribedRegion>& regions, const std::vector<RegionFace>& paired);
 
 // Views of one model from unit directions (model frame, object towards sensor), in their order whatever the number of
 // threads; distance, roll and noise of view i from stream i of the seed. progress(done) may be called from any thread.
@@ -51,7 +57,8 @@ struct ViewSample {
                                                         std::span<const Eigen::Vector3d> directions, std::uint64_t seed,
                                                         const std::function<void(int)>& progress = {});
 
-// All views of one model from the viewing sphere, in view order whatever the number of threads. progress(done) may be called from any thread.
+// All views of one model from the viewing sphere, in view order whatever the number of threads. progress(done) may be
+// called from any thread.
 [[nodiscard]] std::vector<ViewSample> sample_views(const CadModel& model, const SensorModel& sensor,
                                                    const SegmentationOptions& segmentation,
                                                    const FaceSampleOptions& options,

@@ -38,7 +38,7 @@ Pose canonical_pose(const CompiledModel& model, const Pose& T_sensor_model) {
   return canonical_choice(model, T_sensor_model).T_sensor_model;
 }
 
-std::vector<int> moved_faces(const CompiledModel& model, const std::vector<int>& faces, const Pose& T_model_model) {
+PoolVector<int> moved_faces(const CompiledModel& model, const PoolVector<int>& faces, const Pose& T_model_model) {
   const Pose inverse = T_model_model.inverse();
   const auto nearest = [&](const ModelFace& face) {
     const Eigen::Vector3d centroid = inverse * face.centroid;
@@ -58,13 +58,13 @@ std::vector<int> moved_faces(const CompiledModel& model, const std::vector<int>&
     }
     return best;
   };
-  std::vector<int> moved;
+  PoolVector<int> moved;
   for (const int face : faces) moved.push_back(nearest(model.faces[static_cast<std::size_t>(face)]));
   return moved;
 }
 
-std::vector<Pose> near_symmetric_poses(const CompiledModel& model, const Pose& T_sensor_model) {
-  std::vector<Pose> poses;
+PoolVector<Pose> near_symmetric_poses(const CompiledModel& model, const Pose& T_sensor_model) {
+  PoolVector<Pose> poses;
   for (const Symmetry& symmetry : model.symmetries) {
     if (!symmetry.exact) poses.push_back(T_sensor_model * symmetry.T_model_model);
   }

@@ -1,9 +1,8 @@
 // One pose for all that look the same: which of the equivalent poses of a symmetric object is reported.
 #pragma once
 
-#include <vector>
-
 #include "common/compiled_model.h"
+#include "common/memory_pool.h"
 #include "common/pose.h"
 
 namespace foresight {
@@ -24,11 +23,11 @@ struct CanonicalPose {
 
 // The faces that lie, at the pose T * S, where the given ones lie at the pose T: each face moved by the inverse of S,
 // as the face whose centroid, normal and area it comes nearest to. T_model_model: S, an exact symmetry.
-[[nodiscard]] std::vector<int> moved_faces(const CompiledModel& model, const std::vector<int>& faces,
-                                           const Pose& T_model_model);
+[[nodiscard]] PoolVector<int> moved_faces(const CompiledModel& model, const PoolVector<int>& faces,
+                                          const Pose& T_model_model);
 
 // The poses T * N, N a near symmetry of the model, most overlap first: what else to look at when T fits. Of poses that
 // differ by an exact symmetry alone, one is in the list.
-[[nodiscard]] std::vector<Pose> near_symmetric_poses(const CompiledModel& model, const Pose& T_sensor_model);
+[[nodiscard]] PoolVector<Pose> near_symmetric_poses(const CompiledModel& model, const Pose& T_sensor_model);
 
 }  // namespace foresight

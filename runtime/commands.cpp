@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <span>
 #include <thread>
 
 #include "common/bop_scene.h"
@@ -100,7 +101,7 @@ const CompiledModel& find_model(const Database& database, const std::string& nam
 }
 
 // Hues by the golden angle: neighbouring labels look different.
-std::vector<unsigned char> color_labels(const std::vector<int>& labels) {
+std::vector<unsigned char> color_labels(std::span<const int> labels) {
   std::vector<unsigned char> rgb(labels.size() * 3, 0);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (labels[i] == 0) continue;
@@ -127,6 +128,12 @@ SegmentationOptions default_segmentation(const ReadyScan& scan) {
   return segmentation_options_for(sensor);
 }
 
+RecognitionResult recognize_in(MemoryPool& pool, const ReadyScan& scan, const Database& database,
+                               const RecognizeOptions& options, const Deadline& deadline) {
+  const PoolScope scope(pool);
+  return recognize(scan.image, scan.camera, database, options, deadline);
+}
+
 }  // namespace
 
 int run_recognize(const RecognizeCommand& command) {
@@ -138,13 +145,14 @@ int run_recognize(const RecognizeCommand& command) {
   bool all_complete = true;
   const std::vector<ListedScan> scans = list_scans(command);
   // The bar would fight with results printed to the same terminal, so it shows only where they go elsewhere.
+  MemoryPool pool;
   Progress progress(scans.size() > 1 ? command.progress : "none", "recognize", static_cast<int>(scans.size()));
   for (const auto& [file, options] : scans) {
     const ReadyScan scan = read_ready_scan(file, options);
     const Deadline deadline = command.deadline_ms > 0
                                   ? Deadline(Clock::now() + std::chrono::milliseconds(command.deadline_ms))
                                   : std::nullopt;
-    const RecognitionResult result = recognize(scan.image, scan.camera, database, command.options, deadline);
+    const RecognitionResult result = recognize_in(pool, scan, database, command.options, deadline);
     // Not before the first result: a refused scan leaves stdout empty.
     if (command.format == "bop-csv" && &file == &scans.front().file) std::cout << bop_csv_header();
     print(command, file, result, names, scan.read_milliseconds);
@@ -178,8 +186,8 @@ int run_segment(const SegmentCommand& command) {
   const ReadyScan scan = read_ready_scan(command.scan, read_options(command.source));
   const SegmentationOptions options =
       command.database.empty() ? default_segmentation(scan) : load_database(command.database).content().segmentation;
-  const std::vector<Region> regions = segment(scan.image, options);
-  const std::vector<int> labels = label_image(regions, scan.image.size());
+  const PoolVector<Region> regions = segment(scan.image, options);
+  const PoolVector<int> labels = label_image(regions, scan.image.size());
   if (command.color) {
     write_rgb_png(command.output, scan.image.rows, scan.image.columns, color_labels(labels));
   } else {

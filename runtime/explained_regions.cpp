@@ -8,11 +8,11 @@ namespace {
 // A template point in the sensor frame, with the normals of its faces (an edge point has several).
 struct PosedPoint {
   Eigen::Vector3d position;
-  std::vector<Eigen::Vector3d> normals;
+  PoolVector<Eigen::Vector3d> normals;
 };
 
-std::vector<PosedPoint> posed_points(const CompiledModel& model, const Pose& T_sensor_model) {
-  std::vector<PosedPoint> posed;
+PoolVector<PosedPoint> posed_points(const CompiledModel& model, const Pose& T_sensor_model) {
+  PoolVector<PosedPoint> posed;
   for (const TemplatePoint& point : model.surface.points) {
     PosedPoint& added = posed.emplace_back();
     added.position = T_sensor_model * point.position.cast<double>();
@@ -23,9 +23,9 @@ std::vector<PosedPoint> posed_points(const CompiledModel& model, const Pose& T_s
   return posed;
 }
 
-std::vector<Eigen::Vector3d> agreeing_points(const std::vector<PosedPoint>& points, const Eigen::Vector3d& normal,
-                                             double cosine) {
-  std::vector<Eigen::Vector3d> agreeing;
+PoolVector<Eigen::Vector3d> agreeing_points(const PoolVector<PosedPoint>& points, const Eigen::Vector3d& normal,
+                                            double cosine) {
+  PoolVector<Eigen::Vector3d> agreeing;
   for (const PosedPoint& point : points) {
     if (std::any_of(point.normals.begin(), point.normals.end(),
                     [&](const auto& n) { return n.dot(normal) >= cosine; })) {
@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3d> agreeing_points(const std::vector<PosedPoint>& poin
   return agreeing;
 }
 
-double explained_share(const Region& region, const RangeImage& image, const std::vector<Eigen::Vector3d>& points,
+double explained_share(const Region& region, const RangeImage& image, const PoolVector<Eigen::Vector3d>& points,
                        double reach, int most_samples) {
   const std::size_t step = std::max<std::size_t>(1, region.cells.size() / static_cast<std::size_t>(most_samples));
   int looked_at = 0;
@@ -51,12 +51,12 @@ double explained_share(const Region& region, const RangeImage& image, const std:
 
 }  // namespace
 
-std::vector<int> explained_regions(const CompiledModel& model, const Pose& T_sensor_model, const RangeImage& image,
-                                   const std::vector<DescribedRegion>& regions, const ExplanationOptions& options) {
-  const std::vector<PosedPoint> points = posed_points(model, T_sensor_model);
+PoolVector<int> explained_regions(const CompiledModel& model, const Pose& T_sensor_model, const RangeImage& image,
+                                  const PoolVector<DescribedRegion>& regions, const ExplanationOptions& options) {
+  const PoolVector<PosedPoint> points = posed_points(model, T_sensor_model);
   // A point of the surface lies within one spacing of a template point.
   const double reach = options.match_distance + model.surface.spacing;
-  std::vector<int> explained;
+  PoolVector<int> explained;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const auto agreeing = agreeing_points(points, regions[i].region.normal, options.normal_cosine);
     if (explained_share(regions[i].region, image, agreeing, reach, options.most_samples) >= options.smallest_share) {

@@ -2,9 +2,8 @@
 // V.C).
 #pragma once
 
-#include <vector>
-
 #include "common/compiled_model.h"
+#include "common/memory_pool.h"
 #include "common/pose.h"
 #include "common/range_image.h"
 #include "common/region_attributes.h"
@@ -23,8 +22,8 @@ struct ExplanationOptions {
 // The paper drops hypotheses "which have regions in common with the recognized object"; read here as all the regions
 // that the accepted pose explains, not only the two or three that were matched. All template points take part, not only
 // those of the aspect: a face of which little shows still explains its region.
-[[nodiscard]] std::vector<int> explained_regions(const CompiledModel& model, const Pose& T_sensor_model,
-                                                 const RangeImage& image, const std::vector<DescribedRegion>& regions,
-                                                 const ExplanationOptions& options = {});
+[[nodiscard]] PoolVector<int> explained_regions(const CompiledModel& model, const Pose& T_sensor_model,
+                                                const RangeImage& image, const PoolVector<DescribedRegion>& regions,
+                                                const ExplanationOptions& options = {});
 
 }  // namespace foresight

@@ -1,11 +1,14 @@
 #include "runtime/foresight.h"
 
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <string_view>
 
 #include "common/errors.h"
+#include "common/memory_pool.h"
 #include "runtime/database.h"
+#include "runtime/detection.h"
 #include "runtime/recognize.h"
 #include "runtime/selftest.h"
 
@@ -42,14 +45,30 @@ std::shared_ptr<const Database> load_shared_database(const DatabaseBytes& databa
   return std::make_shared<const Database>(decode_database(bytes, kMemory));
 }
 
+// What one recognition at a time works with.
+struct Workplace {
+  MemoryPool pool;
+  SpareDetections spare;
+
+  Workplace(const Database& database, std::size_t reserve) : pool(reserve), spare(spare_detections(database)) {}
+};
+
 struct Recognizer::Impl {
   std::shared_ptr<const Database> database;
   RecognizeOptions options;
+  Workplace workplace;
+  std::atomic_flag in_use;  // the workplace
+
+  Impl(std::shared_ptr<const Database> shared, const RecognizeOptions& given)
+      : database(std::move(shared)), options(given), workplace(*database, given.reserved_memory) {}
+
+  void recognize(const RangeImageView& view, std::optional<std::chrono::milliseconds> deadline, Workplace& at,
+                 RecognitionResult& result) const;
 };
 
 Recognizer::Recognizer(const std::string& database_file, const RecognizeOptions& options) {
   check(options);
-  impl_ = std::make_unique<Impl>(Impl{load_shared_database(database_file), options});
+  impl_ = std::make_unique<Impl>(load_shared_database(database_file), options);
   check_method(options, *impl_->database, database_file);
 }
 
@@ -57,12 +76,12 @@ Recognizer::Recognizer(std::shared_ptr<const Database> database, const Recognize
   assert(database != nullptr);
   check(options);
   check_method(options, *database, "shared database");
-  impl_ = std::make_unique<Impl>(Impl{std::move(database), options});
+  impl_ = std::make_unique<Impl>(std::move(database), options);
 }
 
 Recognizer::Recognizer(const DatabaseBytes& database, const RecognizeOptions& options) {
   check(options);
-  impl_ = std::make_unique<Impl>(Impl{load_shared_database(database), options});
+  impl_ = std::make_unique<Impl>(load_shared_database(database), options);
   check_method(options, *impl_->database, kMemory);
 }
 
@@ -70,9 +89,11 @@ Recognizer::~Recognizer() = default;
 Recognizer::Recognizer(Recognizer&&) noexcept = default;
 Recognizer& Recognizer::operator=(Recognizer&&) noexcept = default;
 
-RecognitionResult Recognizer::recognize(const RangeImageView& view,
-                                        std::optional<std::chrono::milliseconds> deadline) const {
+void Recognizer::Impl::recognize(const RangeImageView& view, std::optional<std::chrono::milliseconds> deadline,
+                                 Workplace& at, RecognitionResult& result) const {
   const auto start = std::chrono::steady_clock::now();
+  empty(result, at.spare);
+  const PoolScope scope(at.pool);
   const RangeImage image = copy_image(view);
   const std::optional<PinholeCamera> camera = fit_camera(image);
   if (!camera) {
@@ -80,7 +101,29 @@ RecognitionResult Recognizer::recognize(const RangeImageView& view,
                      "give x, y, z in the sensor frame (x right, y down, z forward, mm), origin at the camera centre");
   }
   const Deadline until = deadline ? Deadline(start + *deadline) : std::nullopt;
-  return foresight::recognize(image, *camera, *impl_->database, impl_->options, until);
+  foresight::recognize(image, *camera, *database, options, until, result, at.spare);
+  result.statistics.pool_bytes = static_cast<long>(at.pool.used());
+}
+
+void Recognizer::recognize(const RangeImageView& view, std::optional<std::chrono::milliseconds> deadline,
+                           RecognitionResult& result) const {
+  if (impl_->in_use.test_and_set(std::memory_order_acquire)) {
+    Workplace own(*impl_->database, 0);
+    impl_->recognize(view, deadline, own, result);
+    return;
+  }
+  struct Leave {
+    std::atomic_flag& in_use;
+    ~Leave() { in_use.clear(std::memory_order_release); }
+  } const leave{impl_->in_use};
+  impl_->recognize(view, deadline, impl_->workplace, result);
+}
+
+RecognitionResult Recognizer::recognize(const RangeImageView& view,
+                                        std::optional<std::chrono::milliseconds> deadline) const {
+  RecognitionResult result;
+  recognize(view, deadline, result);
+  return result;
 }
 
 std::vector<std::string> Recognizer::object_names() const {

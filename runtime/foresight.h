@@ -67,6 +67,7 @@ struct Statistics {
   long verifications = 0;
   long energy_evaluations = 0;
   long pose_checks = 0;  // poses looked at before localization; 0 with the paper's method
+  long pool_bytes = 0;   // of the recognizer's memory that were used; 0 where it was not a Recognizer's
 };
 
 // Time of each stage. Unit: ms.
@@ -121,6 +122,9 @@ struct RecognizeOptions {
   double largest_occluding = 0.175;  // gamma, Section V.C. Limit: 0 to 1.
   int most_detections = 0;           // stop after this many, 0 = no limit. Limit: >= 0.
   int most_verifications = 0;        // stop after this many, 0 = no limit. Limit: >= 0.
+  // What a Recognizer takes from the heap when it is made. Scans that need more take it then, and the recognizer keeps
+  // it: Statistics::pool_bytes says how much one needed. 32 MiB are enough for scans of 640 x 480. Unit: bytes.
+  std::size_t reserved_memory = 0;
 };
 
 // The bytes of a database file, wherever they come from: for programs without a file system.
@@ -134,8 +138,9 @@ struct DatabaseBytes {
 [[nodiscard]] std::shared_ptr<const Database> load_shared_database(const std::string& file);
 [[nodiscard]] std::shared_ptr<const Database> load_shared_database(const DatabaseBytes& database);
 
-// Recognizes the objects of one database. Const methods may be called from several threads; one for each thread, all of
-// a shared database, is what later versions stay fastest with.
+// Recognizes the objects of one database. Have one for each thread, all of a shared database: a recognizer keeps the
+// memory that a scan needed for the next one. Const methods may be called from several threads; what finds the memory
+// in use takes its own from the heap.
 class Recognizer {
  public:
   // Throws DatabaseError or InputError (common/errors.h) when the file cannot be used, UsageError for options outside
@@ -153,6 +158,11 @@ class Recognizer {
   // Throws InputError when the view is outside its limits, has no valid cell or is not a pinhole grid; nothing else.
   [[nodiscard]] RecognitionResult recognize(const RangeImageView& image,
                                             std::optional<std::chrono::milliseconds> deadline = {}) const;
+  // The same, in place of what the result holds; when it throws, that is nothing. For programs that run on time: by the
+  // two-way method, with a recognizer and a result that have seen such scans before or with enough reserved_memory, it
+  // neither allocates nor frees, takes no lock, throws nothing and makes no system call (runtime/README.md).
+  void recognize(const RangeImageView& image, std::optional<std::chrono::milliseconds> deadline,
+                 RecognitionResult& result) const;
 
   [[nodiscard]] std::vector<std::string> object_names() const;
   [[nodiscard]] const Database& database() const;

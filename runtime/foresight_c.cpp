@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <new>
@@ -66,6 +67,10 @@ void require(Pointer pointer, const char* name) {
 // specialization here with the size that it had.
 template <typename Struct>
 constexpr std::size_t kFirstSize = sizeof(Struct);
+template <>
+constexpr std::size_t kFirstSize<foresight_options> = offsetof(foresight_options, reserved_memory);
+template <>
+constexpr std::size_t kFirstSize<foresight_statistics> = offsetof(foresight_statistics, pool_bytes);
 
 template <typename Struct>
 void check_size(std::uint32_t size, const char* name) {
@@ -126,6 +131,7 @@ foresight::RecognizeOptions options_of(const foresight_options* given) {
   options.loss = kLosses[static_cast<std::size_t>(taken.loss)];
   options.most_detections = taken.most_detections;
   options.most_verifications = taken.most_verifications;
+  options.reserved_memory = static_cast<std::size_t>(taken.reserved_memory);
   return options;
 }
 
@@ -236,9 +242,8 @@ void foresight_result_release(foresight_result* result) { delete result; }
 
 foresight_status foresight_recognize(const foresight_recognizer* recognizer, const foresight_image* image,
                                      std::int32_t deadline_ms, foresight_result* result) {
-  return guarded([&]() -> foresight_status {
+  const foresight_status status = guarded([&]() -> foresight_status {
     require(result, "result");
-    result->content = {};
     require(recognizer, "recognizer");
     const auto view = take(image, "image");
     refuse_reserved(view.reserved, "image");
@@ -246,10 +251,13 @@ foresight_status foresight_recognize(const foresight_recognizer* recognizer, con
       throw UsageError("deadline_ms", "is negative", "give milliseconds, or FORESIGHT_NO_DEADLINE");
     std::optional<std::chrono::milliseconds> deadline;
     if (deadline_ms != FORESIGHT_NO_DEADLINE) deadline = std::chrono::milliseconds(deadline_ms);
-    result->content = recognizer->recognizer.recognize({view.rows, view.columns, view.xyz}, deadline);
+    recognizer->recognizer.recognize({view.rows, view.columns, view.xyz}, deadline, result->content);
     if (!result->content.complete) return FORESIGHT_DEADLINE;
     return result->content.detections.empty() ? FORESIGHT_NOTHING_FOUND : FORESIGHT_DONE;
   });
+  const bool filled = status == FORESIGHT_DONE || status == FORESIGHT_NOTHING_FOUND || status == FORESIGHT_DEADLINE;
+  if (!filled && result != nullptr) result->content = {};
+  return status;
 }
 
 std::uint32_t foresight_result_detection_count(const foresight_result* result) {
@@ -293,7 +301,8 @@ foresight_status foresight_result_statistics(const foresight_result* result, for
                                      counts.hypotheses,
                                      counts.verifications,
                                      counts.energy_evaluations,
-                                     counts.pose_checks};
+                                     counts.pose_checks,
+                                     counts.pool_bytes};
     give(given, statistics, "statistics");
     return FORESIGHT_DONE;
   });

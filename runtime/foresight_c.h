@@ -104,11 +104,12 @@ typedef struct foresight_options {
   int32_t most_detections;    /* stop after this many, 0 = no limit */
   int32_t most_verifications; /* stop after this many, 0 = no limit */
   int32_t reserved;           /* 0 */
+  uint64_t reserved_memory;   /* bytes taken from the heap at once, so that recognition needs none; see foresight.h */
 } foresight_options;
 
 /* All 0 but the size are the defaults: `foresight_options options = FORESIGHT_OPTIONS_DEFAULT;` */
 #define FORESIGHT_OPTIONS_DEFAULT \
-  { sizeof(foresight_options), 0, 0, 0, 0, 0 }
+  { sizeof(foresight_options), 0, 0, 0, 0, 0, 0 }
 
 /* options: NULL for the defaults. *recognizer is set only when FORESIGHT_DONE is returned. */
 FORESIGHT_API foresight_status foresight_recognizer_create(const foresight_database* database,
@@ -131,7 +132,9 @@ typedef struct foresight_image {
 FORESIGHT_API foresight_status foresight_result_create(foresight_result** result);
 FORESIGHT_API void foresight_result_release(foresight_result* result);
 
-/* Replaces what the result holds; a failure leaves it empty. deadline_ms: from the call, or FORESIGHT_NO_DEADLINE. */
+/* Replaces what the result holds; a failure leaves it empty. deadline_ms: from the call, or FORESIGHT_NO_DEADLINE.
+ * With a recognizer and a result that have seen such scans before, or with enough reserved_memory: no allocation, no
+ * lock, no system call (runtime/README.md says when). */
 FORESIGHT_API foresight_status foresight_recognize(const foresight_recognizer* recognizer, const foresight_image* image,
                                                    int32_t deadline_ms, foresight_result* result);
 
@@ -184,6 +187,7 @@ typedef struct foresight_statistics {
   int64_t verifications;
   int64_t energy_evaluations;
   int64_t pose_checks;
+  int64_t pool_bytes; /* of the recognizer's memory that were used */
 } foresight_statistics;
 
 /* Time of each stage, ms. */

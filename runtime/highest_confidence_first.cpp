@@ -26,7 +26,7 @@ struct Key {
 // Binary heap of 0..n-1 with the least key on top; it knows the place of every item, so a key changes in O(log n).
 class IndexedHeap {
  public:
-  explicit IndexedHeap(std::vector<Key> keys) : keys_(std::move(keys)), items_(keys_.size()), places_(keys_.size()) {
+  explicit IndexedHeap(PoolVector<Key> keys) : keys_(std::move(keys)), items_(keys_.size()), places_(keys_.size()) {
     for (std::size_t i = 0; i < items_.size(); ++i) items_[i] = places_[i] = i;
     for (std::size_t i = items_.size() / 2; i-- > 0;) sink(i);
   }
@@ -67,9 +67,9 @@ class IndexedHeap {
     }
   }
 
-  std::vector<Key> keys_;            // of each item
-  std::vector<std::size_t> items_;   // in heap order
-  std::vector<std::size_t> places_;  // of each item in items_
+  PoolVector<Key> keys_;            // of each item
+  PoolVector<std::size_t> items_;   // in heap order
+  PoolVector<std::size_t> places_;  // of each item in items_
 };
 
 using LabelCounts = std::array<int, 2>;  // committed matches [label]
@@ -85,7 +85,7 @@ class Assignment {
         supporting_(field.matches.size()),
         in_region_(field.by_region.size()) {}
 
-  [[nodiscard]] const std::vector<Label>& labels() const { return labels_; }
+  [[nodiscard]] const PoolVector<Label>& labels() const { return labels_; }
 
   // The label of least energy; OFF on a tie.
   [[nodiscard]] Label best(std::size_t match) const { return gain_of_on(match) > 0.0 ? kOn : kOff; }
@@ -129,19 +129,19 @@ class Assignment {
   }
 
   const HypothesisField& field_;
-  std::vector<bool> committed_;
-  std::vector<Label> labels_;
-  std::vector<LabelCounts> supporting_;  // N+ neighbours of each match
-  std::vector<LabelCounts> in_region_;   // matches of each region
+  PoolVector<bool> committed_;
+  PoolVector<Label> labels_;
+  PoolVector<LabelCounts> supporting_;  // N+ neighbours of each match
+  PoolVector<LabelCounts> in_region_;   // matches of each region
 };
 
 }  // namespace
 
-std::vector<Label> highest_confidence_first(const HypothesisField& field) {
+PoolVector<Label> highest_confidence_first(const HypothesisField& field) {
   const std::size_t count = field.matches.size();
   if (count == 0) return {};
   Assignment assignment(field);
-  std::vector<Key> keys(count);
+  PoolVector<Key> keys(count);
   for (std::size_t i = 0; i < count; ++i) keys[i] = assignment.key(i);
   IndexedHeap heap(std::move(keys));
 

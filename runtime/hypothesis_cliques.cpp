@@ -11,8 +11,8 @@ namespace foresight {
 namespace {
 
 // N+ among the active matches alone: ascending neighbours of each match, empty for inactive ones.
-std::vector<std::vector<int>> active_supports(const HypothesisField& field, const std::vector<Label>& labels) {
-  std::vector<std::vector<int>> result(field.matches.size());
+PoolVector<PoolVector<int>> active_supports(const HypothesisField& field, const PoolVector<Label>& labels) {
+  PoolVector<PoolVector<int>> result(field.matches.size());
   for (std::size_t a = 0; a < result.size(); ++a) {
     if (labels[a] != kOn) continue;
     std::copy_if(field.supports[a].begin(), field.supports[a].end(), std::back_inserter(result[a]),
@@ -35,17 +35,17 @@ ObjectHypothesis make_hypothesis(const HypothesisField& field, const Database& d
 
 }  // namespace
 
-std::vector<ObjectHypothesis> hypothesis_cliques(const HypothesisField& field, const Database& database,
-                                                 const std::vector<Label>& labels) {
+PoolVector<ObjectHypothesis> hypothesis_cliques(const HypothesisField& field, const Database& database,
+                                                const PoolVector<Label>& labels) {
   assert(labels.size() == field.matches.size());
-  const std::vector<std::vector<int>> supports = active_supports(field, labels);
-  std::vector<ObjectHypothesis> hypotheses;
-  std::vector<int> thirds;  // matches that make a 3-clique of the pair (a, b)
+  const PoolVector<PoolVector<int>> supports = active_supports(field, labels);
+  PoolVector<ObjectHypothesis> hypotheses;
+  PoolVector<int> thirds;  // matches that make a 3-clique of the pair (a, b)
   for (int a = 0; a < static_cast<int>(supports.size()); ++a) {
-    const std::vector<int>& of_a = supports[static_cast<std::size_t>(a)];
+    const PoolVector<int>& of_a = supports[static_cast<std::size_t>(a)];
     for (auto next = std::upper_bound(of_a.begin(), of_a.end(), a); next != of_a.end(); ++next) {
       const int b = *next;
-      const std::vector<int>& of_b = supports[static_cast<std::size_t>(b)];
+      const PoolVector<int>& of_b = supports[static_cast<std::size_t>(b)];
       thirds.clear();
       std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::back_inserter(thirds));
       if (thirds.empty()) hypotheses.push_back(make_hypothesis(field, database, std::array{a, b}));

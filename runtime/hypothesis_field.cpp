@@ -31,7 +31,7 @@ bool consistent(const Database& database, const FaceIndex& a, const FaceIndex& b
 
 // Adds the supporting pairs between the matches of two regions. Both lists ascend, so faces of one model stand together
 // in the same order: walk both at once, model by model.
-void link_regions(HypothesisField& field, const std::vector<int>& of_a, const std::vector<int>& of_b,
+void link_regions(HypothesisField& field, const PoolVector<int>& of_a, const PoolVector<int>& of_b,
                   const RelationVector& relation, const Database& database) {
   const auto face_of = [&](int match) -> const FaceIndex& {
     return database.faces()[static_cast<std::size_t>(field.matches[static_cast<std::size_t>(match)].face)];
@@ -49,7 +49,7 @@ void link_regions(HypothesisField& field, const std::vector<int>& of_a, const st
   }
 }
 
-double support_energy(const HypothesisField& field, const std::vector<Label>& labels) {
+double support_energy(const HypothesisField& field, const PoolVector<Label>& labels) {
   double sum = 0.0;
   for (std::size_t a = 0; a < labels.size(); ++a) {
     for (const int neighbour : field.supports[a]) {
@@ -61,9 +61,9 @@ double support_energy(const HypothesisField& field, const std::vector<Label>& la
   return sum;
 }
 
-double contradiction_energy(const HypothesisField& field, const std::vector<Label>& labels) {
+double contradiction_energy(const HypothesisField& field, const PoolVector<Label>& labels) {
   double sum = 0.0;
-  for (const std::vector<int>& region : field.by_region) {
+  for (const PoolVector<int>& region : field.by_region) {
     double on = 0.0;
     for (const int match : region) on += labels[static_cast<std::size_t>(match)] == kOn ? 1.0 : 0.0;
     const double off = static_cast<double>(region.size()) - on;
@@ -75,7 +75,7 @@ double contradiction_energy(const HypothesisField& field, const std::vector<Labe
 
 }  // namespace
 
-HypothesisField build_hypothesis_field(const std::vector<DescribedRegion>& regions, const std::vector<Match>& matches,
+HypothesisField build_hypothesis_field(const PoolVector<DescribedRegion>& regions, const PoolVector<Match>& matches,
                                        const Database& database, const BackgroundOptions& background,
                                        const Potentials& potentials) {
   HypothesisField field;
@@ -99,7 +99,7 @@ HypothesisField build_hypothesis_field(const std::vector<DescribedRegion>& regio
   return field;
 }
 
-double energy(const HypothesisField& field, const std::vector<Label>& labels) {
+double energy(const HypothesisField& field, const PoolVector<Label>& labels) {
   assert(labels.size() == field.matches.size());
   double unaries = 0.0;
   for (std::size_t i = 0; i < labels.size(); ++i) unaries += field.unary[i][labels[i]];

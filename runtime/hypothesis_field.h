@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
+#include "common/memory_pool.h"
 #include "runtime/foresight.h"
 #include "runtime/match_likelihoods.h"
 
@@ -12,22 +12,22 @@ namespace foresight {
 enum Label : int { kOff = 0, kOn = 1 };
 
 struct HypothesisField {
-  std::vector<Match> matches;
+  PoolVector<Match> matches;
   // [match][label]: 1-clique potential minus log-likelihood of the observation.
-  std::vector<std::array<double, 2>> unary;
+  PoolVector<std::array<double, 2>> unary;
   // N+, eq. (2): ascending neighbour matches; same model, distinct faces, distinct regions.
-  std::vector<std::vector<int>> supports;
+  PoolVector<PoolVector<int>> supports;
   // Matches of each region: any two of them contradict, N-, eq. (1).
-  std::vector<std::vector<int>> by_region;
+  PoolVector<PoolVector<int>> by_region;
   Potentials potentials;
 };
 
 // REQUIRES: matches as match_likelihoods returns them for these regions, database and background.
-[[nodiscard]] HypothesisField build_hypothesis_field(const std::vector<DescribedRegion>& regions,
-                                                     const std::vector<Match>& matches, const Database& database,
+[[nodiscard]] HypothesisField build_hypothesis_field(const PoolVector<DescribedRegion>& regions,
+                                                     const PoolVector<Match>& matches, const Database& database,
                                                      const BackgroundOptions& background, const Potentials& potentials);
 
 // U(omega | R) of eq. (3) for a complete assignment, one label a match.
-[[nodiscard]] double energy(const HypothesisField& field, const std::vector<Label>& labels);
+[[nodiscard]] double energy(const HypothesisField& field, const PoolVector<Label>& labels);
 
 }  // namespace foresight

@@ -5,7 +5,7 @@
 
 namespace foresight {
 
-RegionRelations::RegionRelations(const std::vector<DescribedRegion>& regions)
+RegionRelations::RegionRelations(const PoolVector<DescribedRegion>& regions)
     : regions_(regions), known_(regions.size() * (regions.size() + 1) / 2) {}
 
 const RelationVector& RegionRelations::between(int a, int b) {
@@ -22,7 +22,7 @@ bool HypothesisQueue::Node::operator<(const Node& other) const {
          std::tuple(other.bound, -other.a, -other.b, -other.model, -other.match_a, -other.match_b);
 }
 
-HypothesisQueue::HypothesisQueue(const std::vector<RegionMatches>& matches, const std::vector<DescribedRegion>& regions,
+HypothesisQueue::HypothesisQueue(const PoolVector<RegionMatches>& matches, const PoolVector<DescribedRegion>& regions,
                                  const Database& database, const MatchRater& rater, RegionRelations& relations,
                                  double least_rating)
     : matches_(matches),
@@ -32,7 +32,7 @@ HypothesisQueue::HypothesisQueue(const std::vector<RegionMatches>& matches, cons
       relations_(relations),
       least_rating_(least_rating),
       runs_(matches.size()) {
-  std::vector<double> best(matches.size(), 0.0);
+  PoolVector<double> best(matches.size(), 0.0);
   for (std::size_t r = 0; r < matches.size(); ++r) {
     for (std::size_t i = 0; i < matches[r].size(); ++i) {
       const RatedMatch& match = matches[r][i];
@@ -55,8 +55,8 @@ HypothesisQueue::HypothesisQueue(const std::vector<RegionMatches>& matches, cons
 }
 
 void HypothesisQueue::split_by_model(const Node& node) {
-  const std::vector<Run>& of_a = runs_[static_cast<std::size_t>(node.a)];
-  const std::vector<Run>& of_b = runs_[static_cast<std::size_t>(node.b)];
+  const PoolVector<Run>& of_a = runs_[static_cast<std::size_t>(node.a)];
+  const PoolVector<Run>& of_b = runs_[static_cast<std::size_t>(node.b)];
   for (auto a = of_a.begin(), b = of_b.begin(); a != of_a.end() && b != of_b.end();) {
     if (a->model == b->model) {
       nodes_.push({a->best + b->best + rater_.highest_pair_rating(), node.a, node.b, a->model});
@@ -73,7 +73,7 @@ void HypothesisQueue::split_by_model(const Node& node) {
 template <typename Visit>
 void HypothesisQueue::visit_matches(const Node& node, const Visit& visit) const {
   const auto run_of = [&](int region) {
-    const std::vector<Run>& runs = runs_[static_cast<std::size_t>(region)];
+    const PoolVector<Run>& runs = runs_[static_cast<std::size_t>(region)];
     const auto run = std::lower_bound(runs.begin(), runs.end(), node.model,
                                       [](const Run& other, int model) { return other.model < model; });
     return run != runs.end() && run->model == node.model ? *run : Run{};
@@ -118,8 +118,8 @@ std::optional<MatchPair> HypothesisQueue::next(const std::function<bool(int)>& i
   return std::nullopt;
 }
 
-std::vector<MatchPair> HypothesisQueue::pairs_of(int region_a, int region_b, int most) const {
-  std::vector<Node> nodes;
+PoolVector<MatchPair> HypothesisQueue::pairs_of(int region_a, int region_b, int most) const {
+  PoolVector<Node> nodes;
   for (const Run& run : runs_[static_cast<std::size_t>(region_a)]) {
     visit_matches({0.0, std::min(region_a, region_b), std::max(region_a, region_b), run.model}, [&](const Node& node) {
       if (node.bound >= least_rating_) nodes.push_back(node);
@@ -127,7 +127,7 @@ std::vector<MatchPair> HypothesisQueue::pairs_of(int region_a, int region_b, int
   }
   std::sort(nodes.begin(), nodes.end(), [](const Node& x, const Node& y) { return y < x; });
   nodes.resize(std::min(nodes.size(), static_cast<std::size_t>(most)));
-  std::vector<MatchPair> pairs;
+  PoolVector<MatchPair> pairs;
   for (const Node& node : nodes) pairs.push_back(pair_of(node));
   return pairs;
 }

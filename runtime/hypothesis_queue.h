@@ -6,8 +6,8 @@
 #include <functional>
 #include <optional>
 #include <queue>
-#include <vector>
 
+#include "common/memory_pool.h"
 #include "runtime/rated_matches.h"
 
 namespace foresight {
@@ -21,12 +21,12 @@ struct MatchPair {
 // How regions stand to each other, computed when first asked for.
 class RegionRelations {
  public:
-  explicit RegionRelations(const std::vector<DescribedRegion>& regions);
+  explicit RegionRelations(const PoolVector<DescribedRegion>& regions);
   [[nodiscard]] const RelationVector& between(int a, int b);
 
  private:
-  const std::vector<DescribedRegion>& regions_;
-  std::vector<std::optional<RelationVector>> known_;  // lower triangle
+  const PoolVector<DescribedRegion>& regions_;
+  PoolVector<std::optional<RelationVector>> known_;  // lower triangle
 };
 
 // Best first by a heap of bounds: two regions may be rated no higher than their best matches and the best pair there
@@ -35,14 +35,14 @@ class RegionRelations {
 class HypothesisQueue {
  public:
   // All must outlive the queue. least_rating: of the pairs it gives.
-  HypothesisQueue(const std::vector<RegionMatches>& matches, const std::vector<DescribedRegion>& regions,
+  HypothesisQueue(const PoolVector<RegionMatches>& matches, const PoolVector<DescribedRegion>& regions,
                   const Database& database, const MatchRater& rater, RegionRelations& relations, double least_rating);
 
   // None when there are no more pairs of regions that are free. A region that is not free once must not become so
   // again: its pairs may be gone.
   [[nodiscard]] std::optional<MatchPair> next(const std::function<bool(int)>& is_free);
   // The pairs of two regions, the best first, at most so many; whether `next` gave them before or not.
-  [[nodiscard]] std::vector<MatchPair> pairs_of(int region_a, int region_b, int most) const;
+  [[nodiscard]] PoolVector<MatchPair> pairs_of(int region_a, int region_b, int most) const;
 
  private:
   // A run of one region's matches with one model.
@@ -67,14 +67,14 @@ class HypothesisQueue {
   void visit_matches(const Node& node, const Visit& visit) const;
   [[nodiscard]] MatchPair pair_of(const Node& node) const;
 
-  const std::vector<RegionMatches>& matches_;
-  const std::vector<DescribedRegion>& regions_;
+  const PoolVector<RegionMatches>& matches_;
+  const PoolVector<DescribedRegion>& regions_;
   const Database& database_;
   const MatchRater& rater_;
   RegionRelations& relations_;
   double least_rating_;
-  std::vector<std::vector<Run>> runs_;  // by region, models ascending
-  std::priority_queue<Node> nodes_;
+  PoolVector<PoolVector<Run>> runs_;  // by region, models ascending
+  std::priority_queue<Node, PoolVector<Node>> nodes_;
 };
 
 }  // namespace foresight

@@ -68,7 +68,7 @@ class Solid {
   }
 
  private:
-  std::vector<Triangle> triangles_;
+  PoolVector<Triangle> triangles_;
   Eigen::AlignedBox3d box_;
 };
 

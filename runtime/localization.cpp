@@ -18,7 +18,7 @@ int aspect_of(const CompiledModel& model, const ViewingSphere& sphere, const Pos
 }
 
 // Template points are listed face by face: every so many of them lie all over the surface.
-std::vector<int> evenly_chosen(std::vector<int> points, int most) {
+PoolVector<int> evenly_chosen(PoolVector<int> points, int most) {
   const auto count = static_cast<std::size_t>(most);
   if (most == 0 || points.size() <= count) return points;
   for (std::size_t k = 0; k < count; ++k) points[k] = points[k * points.size() / count];
@@ -45,16 +45,16 @@ class Refinement {
     const int aspect = aspect_of(model_, sphere_, pose_);
     if (aspect == aspect_) return;
     aspect_ = aspect;
-    std::vector<int> visible = points_in_sight();
+    PoolVector<int> visible = points_in_sight();
     if (visible != visible_) look(std::move(visible));
   }
   [[nodiscard]] Localization result() const { return {pose_, current_.energy, evaluations_}; }
 
  private:
-  [[nodiscard]] std::vector<int> points_in_sight() const {
+  [[nodiscard]] PoolVector<int> points_in_sight() const {
     return evenly_chosen(visible_points(model_, sphere_, pose_), options_.most_points);
   }
-  void look(std::vector<int> visible) {
+  void look(PoolVector<int> visible) {
     visible_ = std::move(visible);
     current_ = evaluate(pose_, nullptr);
   }
@@ -72,7 +72,7 @@ class Refinement {
   const LocalizationOptions& options_;
   Pose pose_;
   int aspect_ = -1;           // of the pose that V was last taken from
-  std::vector<int> visible_;  // V, fixed during a line search
+  PoolVector<int> visible_;   // V, fixed during a line search
   EnergyEvaluation current_;  // E at pose_ over visible_
   int evaluations_ = 0;
 };
@@ -145,12 +145,12 @@ Residual residual_at(const Eigen::Vector3d& point, const Residual* nearby, const
 
 }  // namespace
 
-std::vector<int> visible_points(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model) {
+PoolVector<int> visible_points(const CompiledModel& model, const ViewingSphere& sphere, const Pose& T_sensor_model) {
   const int cell = aspect_of(model, sphere, T_sensor_model);
   if (cell < 0) return {};
   const std::vector<int>& aspect = model.surface.aspects[static_cast<std::size_t>(cell)];
   const auto shown = [&aspect](int face) { return std::binary_search(aspect.begin(), aspect.end(), face); };
-  std::vector<int> visible;
+  PoolVector<int> visible;
   for (std::size_t i = 0; i < model.surface.points.size(); ++i) {
     const std::vector<int>& faces = model.surface.points[i].faces;
     if (std::any_of(faces.begin(), faces.end(), shown)) visible.push_back(static_cast<int>(i));
@@ -158,9 +158,9 @@ std::vector<int> visible_points(const CompiledModel& model, const ViewingSphere&
   return visible;
 }
 
-EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<int>& visible,
-                                 const Pose& T_sensor_model, const NearestData& data,
-                                 const LocalizationOptions& options, const EnergyEvaluation* nearby) {
+EnergyEvaluation evaluate_energy(const CompiledModel& model, const PoolVector<int>& visible, const Pose& T_sensor_model,
+                                 const NearestData& data, const LocalizationOptions& options,
+                                 const EnergyEvaluation* nearby) {
   assert(nearby == nullptr || nearby->residuals.size() == visible.size());
   EnergyEvaluation evaluation;
   evaluation.residuals.reserve(visible.size());
@@ -175,7 +175,7 @@ EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<i
   return evaluation;
 }
 
-double localization_energy(const CompiledModel& model, const std::vector<int>& visible, const Pose& T_sensor_model,
+double localization_energy(const CompiledModel& model, const PoolVector<int>& visible, const Pose& T_sensor_model,
                            const NearestData& data, const LocalizationOptions& options) {
   return evaluate_energy(model, visible, T_sensor_model, data, options).energy;
 }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "common/compiled_model.h"
+#include "common/memory_pool.h"
 #include "common/pose.h"
 #include "common/viewing_sphere.h"
 #include "runtime/foresight.h"
@@ -33,8 +33,8 @@ struct Localization {
 
 // Indices of the template points visible in a pose, ascending: those with a face in the aspect of the current viewing
 // direction, which points from the model's centre to the camera. V(q). Empty when that centre lies in the camera.
-[[nodiscard]] std::vector<int> visible_points(const CompiledModel& model, const ViewingSphere& sphere,
-                                              const Pose& T_sensor_model);
+[[nodiscard]] PoolVector<int> visible_points(const CompiledModel& model, const ViewingSphere& sphere,
+                                             const Pose& T_sensor_model);
 
 // One evaluation of E(q), eq. (9), with what it was summed from.
 struct EnergyEvaluation {
@@ -46,18 +46,18 @@ struct EnergyEvaluation {
     double clearance = 0.0;   // no data are nearer than this. Unit: mm.
   };
   double energy = 0.0;
-  std::vector<Residual> residuals;  // in the order of the visible points
+  PoolVector<Residual> residuals;  // in the order of the visible points
 };
 
 // E(q) of eq. (9) over fixed visible points: one search for a nearest data point each. 0 when there are none.
 // nearby: an evaluation of the same visible points at a pose not far away; the searches start from its nearest points.
-[[nodiscard]] EnergyEvaluation evaluate_energy(const CompiledModel& model, const std::vector<int>& visible,
+[[nodiscard]] EnergyEvaluation evaluate_energy(const CompiledModel& model, const PoolVector<int>& visible,
                                                const Pose& T_sensor_model, const NearestData& data,
                                                const LocalizationOptions& options,
                                                const EnergyEvaluation* nearby = nullptr);
 
 // Its energy alone.
-[[nodiscard]] double localization_energy(const CompiledModel& model, const std::vector<int>& visible,
+[[nodiscard]] double localization_energy(const CompiledModel& model, const PoolVector<int>& visible,
                                          const Pose& T_sensor_model, const NearestData& data,
                                          const LocalizationOptions& options);
 

@@ -9,10 +9,10 @@ namespace {
 // P(R|not M_j) of eq. (5) for each face j of one region. The sum over k != j is a sum over the faces before j plus one
 // over the faces behind j: all its terms are positive, so nothing cancels where one face explains nearly everything, as
 // it would in the whole sum minus its own term.
-std::vector<double> likelihoods_off(const std::vector<double>& likelihoods, const std::vector<double>& priors,
-                                    const BackgroundOptions& background) {
+PoolVector<double> likelihoods_off(const PoolVector<double>& likelihoods, const PoolVector<double>& priors,
+                                   const BackgroundOptions& background) {
   const std::size_t faces = likelihoods.size();
-  std::vector<double> result(faces);
+  PoolVector<double> result(faces);
   double behind = 0.0;
   for (std::size_t j = faces; j-- > 0;) {
     result[j] = behind;
@@ -34,20 +34,20 @@ BackgroundOptions background_for(const DensityOptions& densities) {
   return background;
 }
 
-std::vector<Match> match_likelihoods(const std::vector<DescribedRegion>& regions, const Database& database,
-                                     const BackgroundOptions& options) {
+PoolVector<Match> match_likelihoods(const PoolVector<DescribedRegion>& regions, const Database& database,
+                                    const BackgroundOptions& options) {
   assert(options.prior > 0.0 && options.prior < 1.0 && options.likelihood > 0.0);
   const std::size_t faces = database.faces().size();
-  std::vector<double> priors(faces);
+  PoolVector<double> priors(faces);
   for (std::size_t j = 0; j < faces; ++j) priors[j] = database.prior(static_cast<int>(j), options.prior);
 
-  std::vector<Match> matches;
-  std::vector<double> likelihoods(faces);
+  PoolVector<Match> matches;
+  PoolVector<double> likelihoods(faces);
   for (std::size_t i = 0; i < regions.size(); ++i) {
     for (std::size_t j = 0; j < faces; ++j) {
       likelihoods[j] = database.likelihood(static_cast<int>(j), regions[i].attributes);  // eq. (4)
     }
-    const std::vector<double> off = likelihoods_off(likelihoods, priors, options);
+    const PoolVector<double> off = likelihoods_off(likelihoods, priors, options);
     for (std::size_t j = 0; j < faces; ++j) {
       if (!(likelihoods[j] > 0.0)) continue;  // "we throw out hypotheses that have zero probability", Section IV.A
       matches.push_back({static_cast<int>(i), static_cast<int>(j), std::log(likelihoods[j]), std::log(off[j])});

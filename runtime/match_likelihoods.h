@@ -1,8 +1,7 @@
 // Matches between regions and model faces with their likelihoods, eqs. (4) and (5).
 #pragma once
 
-#include <vector>
-
+#include "common/memory_pool.h"
 #include "common/region_attributes.h"
 #include "runtime/database.h"
 
@@ -26,7 +25,7 @@ struct Match {
 };
 
 // Every match with P(R|M) > 0, ordered by region, then face. The number of possible matches is regions * faces.
-[[nodiscard]] std::vector<Match> match_likelihoods(const std::vector<DescribedRegion>& regions,
-                                                   const Database& database, const BackgroundOptions& options);
+[[nodiscard]] PoolVector<Match> match_likelihoods(const PoolVector<DescribedRegion>& regions, const Database& database,
+                                                  const BackgroundOptions& options);
 
 }  // namespace foresight

@@ -5,9 +5,9 @@
 #pragma once
 
 #include <limits>
-#include <vector>
 
 #include "common/camera.h"
+#include "common/memory_pool.h"
 #include "common/range_image.h"
 #include "runtime/nearest_data.h"
 
@@ -36,7 +36,7 @@ class NearestDataCell final : public NearestData {
     int side = 0;  // Unit: cells.
     int rows = 0;
     int columns = 0;
-    std::vector<Depths> depths;  // row by row
+    PoolVector<Depths> depths;  // row by row
   };
   struct Search;
   [[nodiscard]] static Blocks blocks_of(const RangeImage& image, int side);

@@ -15,7 +15,7 @@ constexpr double kHopeless = 0.6;         // of the cells looked at speak agains
 constexpr double kDoubtOfOne = 1.0;       // by which one sample may mislead about all
 constexpr double kLeastShare = 1.0 / 3.0;
 
-void add_support(std::vector<FaceSupport>& supports, int region, int face, double cells) {
+void add_support(PoolVector<FaceSupport>& supports, int region, int face, double cells) {
   for (FaceSupport& support : supports) {
     if (support.region != region || support.face != face) continue;
     support.cells += cells;
@@ -36,9 +36,9 @@ PoseChecker::PoseChecker(const Database& database, const LabelledScan& scan, con
       points_(database.models().size()),
       of_region_(scan.regions.size(), 0.0) {}
 
-const std::vector<PoseChecker::FacePoints>& PoseChecker::points_of(int model) {
+const PoolVector<PoseChecker::FacePoints>& PoseChecker::points_of(int model) {
   const CompiledModel& compiled = database_.models()[static_cast<std::size_t>(model)];
-  std::vector<FacePoints>& points = points_[static_cast<std::size_t>(model)];
+  PoolVector<FacePoints>& points = points_[static_cast<std::size_t>(model)];
   if (!points.empty()) return points;
   points.resize(compiled.faces.size());
   for (std::size_t i = 0; i < compiled.surface.points.size(); ++i) {
@@ -52,14 +52,14 @@ const std::vector<PoseChecker::FacePoints>& PoseChecker::points_of(int model) {
 }
 
 // Points in the middle of faces, evenly from the list of each; edge points only where a face has few others.
-std::vector<PoseChecker::Sample> PoseChecker::choose_samples(int index, const std::vector<int>& faces) {
+PoolVector<PoseChecker::Sample> PoseChecker::choose_samples(int index, const std::vector<int>& faces) {
   const CompiledModel& model = database_.models()[static_cast<std::size_t>(index)];
-  std::vector<Sample> chosen;
+  PoolVector<Sample> chosen;
   std::size_t in_sight = 0;
-  std::vector<std::vector<int>> of_face;
+  PoolVector<PoolVector<int>> of_face;
   for (const int face : faces) {
     const FacePoints& all = points_of(index)[static_cast<std::size_t>(face)];
-    std::vector<int>& points = of_face.emplace_back(all.middle);
+    PoolVector<int>& points = of_face.emplace_back(all.middle);
     const std::size_t missing = points.size() < kFewestOfFace ? kFewestOfFace - points.size() : 0;
     const auto edges = static_cast<std::ptrdiff_t>(std::min(missing, all.edge.size()));
     points.insert(points.end(), all.edge.begin(), all.edge.begin() + edges);
@@ -68,7 +68,7 @@ std::vector<PoseChecker::Sample> PoseChecker::choose_samples(int index, const st
   const double keep =
       std::min(1.0, static_cast<double>(options_.samples) / static_cast<double>(std::max<std::size_t>(1, in_sight)));
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const std::vector<int>& points = of_face[f];
+    const PoolVector<int>& points = of_face[f];
     const auto wanted = static_cast<std::size_t>(std::lround(keep * static_cast<double>(points.size())));
     const std::size_t count = std::min(points.size(), std::max(wanted, kFewestOfFace));
     const auto area = static_cast<float>(model.faces[static_cast<std::size_t>(faces[f])].area /
@@ -79,7 +79,7 @@ std::vector<PoseChecker::Sample> PoseChecker::choose_samples(int index, const st
     }
   }
   // Every stretch of the list looks at all faces, so that a hopeless pose shows soon.
-  std::vector<Sample> spread;
+  PoolVector<Sample> spread;
   spread.reserve(chosen.size());
   const std::size_t stretches = (chosen.size() + kStretch - 1) / kStretch;
   for (std::size_t first = 0; first < stretches; ++first) {
@@ -88,7 +88,7 @@ std::vector<PoseChecker::Sample> PoseChecker::choose_samples(int index, const st
   return spread;
 }
 
-const std::vector<PoseChecker::Sample>& PoseChecker::samples_of(int model, int aspect) {
+const PoolVector<PoseChecker::Sample>& PoseChecker::samples_of(int model, int aspect) {
   const auto [at, added] = samples_.try_emplace({model, aspect});
   if (added) {
     const SurfaceTemplate& surface = database_.models()[static_cast<std::size_t>(model)].surface;
@@ -179,13 +179,13 @@ PoseCheck PoseChecker::check(int model, const Pose& T_sensor_model, double least
 }
 
 Pose refit_to_planes(const CompiledModel& model, const Pose& T_sensor_model, const PoseCheck& check,
-                     const std::vector<DescribedRegion>& regions) {
+                     const PoolVector<DescribedRegion>& regions) {
   struct PlanePair {
     const Region* region;
     const ModelFace* face;
     double weight;
   };
-  std::vector<PlanePair> planes;
+  PoolVector<PlanePair> planes;
   double weights = 0.0;
   for (const FaceSupport& support : check.supports) {
     const Region& region = regions[static_cast<std::size_t>(support.region)].region;

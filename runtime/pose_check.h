@@ -2,10 +2,9 @@
 // in order; what they are worth is decided by the evidence of every cell (pose_evidence.h) after localization.
 #pragma once
 
-#include <map>
 #include <utility>
-#include <vector>
 
+#include "common/memory_pool.h"
 #include "common/pose.h"
 #include "common/viewing_sphere.h"
 #include "runtime/database.h"
@@ -27,7 +26,7 @@ struct PoseCheck {
   double owned = 0.0;
   double contradicted = 0.0;  // behind or tilted
   double hidden = 0.0;
-  std::vector<FaceSupport> supports;
+  PoolVector<FaceSupport> supports;
 
   // Owned less contradicted cells as a share of all, with a doubt that outweighs a handful; at most 1.
   [[nodiscard]] double quality() const;
@@ -63,12 +62,12 @@ class PoseChecker {
   };
   // Template points of a face: those in its middle, and those on its edges.
   struct FacePoints {
-    std::vector<int> middle;
-    std::vector<int> edge;
+    PoolVector<int> middle;
+    PoolVector<int> edge;
   };
-  const std::vector<FacePoints>& points_of(int model);
-  const std::vector<Sample>& samples_of(int model, int aspect);
-  [[nodiscard]] std::vector<Sample> choose_samples(int model, const std::vector<int>& faces);
+  const PoolVector<FacePoints>& points_of(int model);
+  const PoolVector<Sample>& samples_of(int model, int aspect);
+  [[nodiscard]] PoolVector<Sample> choose_samples(int model, const std::vector<int>& faces);
   void pose_faces(const CompiledModel& model, const std::vector<int>& faces, const Pose& T_sensor_model);
   void look_at(const Sample& sample, const Eigen::Vector3f& point, int face, PoseCheck& check);
 
@@ -77,16 +76,16 @@ class PoseChecker {
   PoseCheckOptions options_;
   ViewingSphere sphere_{kAspectCells};
   float squared_least_cosine_ = 0.0F;
-  std::vector<std::vector<FacePoints>> points_;                 // by model and face, once asked for
-  std::map<std::pair<int, int>, std::vector<Sample>> samples_;  // by model and aspect
-  std::vector<double> of_region_;                               // scratch: explained cells
-  std::vector<PosedFace> posed_;                                // scratch: the faces of the aspect
+  PoolVector<PoolVector<FacePoints>> points_;                 // by model and face, once asked for
+  PoolMap<std::pair<int, int>, PoolVector<Sample>> samples_;  // by model and aspect
+  PoolVector<double> of_region_;                              // scratch: explained cells
+  PoolVector<PosedFace> posed_;                               // scratch: the faces of the aspect
 };
 
 // The pose moved so that the planes of its faces lie in those of the regions that support them: least squares over
 // planes, weighted by their cells; directions that no plane decides stay as they are. Regions of which the object
 // explains less than a third take no part.
 [[nodiscard]] Pose refit_to_planes(const CompiledModel& model, const Pose& T_sensor_model, const PoseCheck& check,
-                                   const std::vector<DescribedRegion>& regions);
+                                   const PoolVector<DescribedRegion>& regions);
 
 }  // namespace foresight

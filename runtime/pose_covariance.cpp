@@ -46,9 +46,9 @@ class DrawnObject {
         shared_(shared_quantization(sensor)),
         least_cosine_(std::cos(sensor.largest_incidence)) {}
 
-  [[nodiscard]] std::vector<PoseConstraint> constraints() const {
-    std::vector<PoseConstraint> planes;
-    std::vector<PoseConstraint> outline;
+  [[nodiscard]] PoolVector<PoseConstraint> constraints() const {
+    PoolVector<PoseConstraint> planes;
+    PoolVector<PoseConstraint> outline;
     for (int row = 0; row < drawn_.rows; ++row) {
       for (int column = 0; column < drawn_.columns; ++column) {
         const std::optional<PoseConstraint> plane = plane_at(row, column);
@@ -223,8 +223,8 @@ struct AllInformation {
   Information outline;
 };
 
-AllInformation gather(const std::vector<PoseConstraint>& constraints, const Eigen::Vector3d& about) {
-  std::map<int, Group> groups;
+AllInformation gather(const PoolVector<PoseConstraint>& constraints, const Eigen::Vector3d& about) {
+  PoolMap<int, Group> groups;
   for (const PoseConstraint& constraint : constraints) groups[constraint.group].add(constraint, about);
   AllInformation all;
   for (const auto& [number, group] : groups) (number < 0 ? all.outline : all.planes).add(group.information());
@@ -241,13 +241,13 @@ double excess_scatter(const Information& planes, const PoseCovariance& prior) {
 
 }  // namespace
 
-std::vector<PoseConstraint> pose_constraints(const CompiledModel& model, const Pose& T_sensor_model,
-                                             const RangeImage& image, const PinholeCamera& camera,
-                                             const SensorModel& sensor) {
+PoolVector<PoseConstraint> pose_constraints(const CompiledModel& model, const Pose& T_sensor_model,
+                                            const RangeImage& image, const PinholeCamera& camera,
+                                            const SensorModel& sensor) {
   return DrawnObject(model, T_sensor_model, image, camera, sensor).constraints();
 }
 
-PoseCovariance covariance_of(const std::vector<PoseConstraint>& constraints, const PosePrior& prior,
+PoseCovariance covariance_of(const PoolVector<PoseConstraint>& constraints, const PosePrior& prior,
                              const Eigen::Vector3d& origin) {
   const AllInformation seen = gather(constraints, prior.about);
   Vector6 before;  // a uniform error within +- l has the variance l^2 / 3

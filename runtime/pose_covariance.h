@@ -5,10 +5,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "common/camera.h"
 #include "common/compiled_model.h"
+#include "common/memory_pool.h"
 #include "common/pose.h"
 #include "common/range_image.h"
 #include "common/sensor_model.h"
@@ -35,9 +35,9 @@ struct PoseConstraint {
 // independent; quantization that no noise dithers is shared by the plane. Outline: where data on the object end at its
 // drawn border before something farther or nothing, they say where the border is, to a cell: all of the border together
 // counts as one such cell, since its errors are not independent.
-[[nodiscard]] std::vector<PoseConstraint> pose_constraints(const CompiledModel& model, const Pose& T_sensor_model,
-                                                           const RangeImage& image, const PinholeCamera& camera,
-                                                           const SensorModel& sensor);
+[[nodiscard]] PoolVector<PoseConstraint> pose_constraints(const CompiledModel& model, const Pose& T_sensor_model,
+                                                          const RangeImage& image, const PinholeCamera& camera,
+                                                          const SensorModel& sensor);
 
 // Before any data: any place within `distance` and any turn are as likely. Uniform errors of these limits.
 struct PosePrior {
@@ -49,7 +49,7 @@ struct PosePrior {
 // The mean square error of the pose with its origin at `origin`: the inverse of the information of constraints and
 // prior, and the square of the step to the least squares pose, which a reported pose mostly falls short of. Planes
 // whose data scatter more than their sigma count less by as much. Measured by `experiments covariance`.
-[[nodiscard]] PoseCovariance covariance_of(const std::vector<PoseConstraint>& constraints, const PosePrior& prior,
+[[nodiscard]] PoseCovariance covariance_of(const PoolVector<PoseConstraint>& constraints, const PosePrior& prior,
                                            const Eigen::Vector3d& origin);
 
 // Both, with the object's diameter as the prior's distance. Assumes the right object near its true pose; what the

@@ -24,7 +24,7 @@ bool inner(const Rendering& drawn, int row, int column, const LargestStep& large
   const auto at = static_cast<std::size_t>(drawn.cell(row, column));
   const std::size_t above = at - static_cast<std::size_t>(drawn.columns);
   const std::size_t below = at + static_cast<std::size_t>(drawn.columns);
-  const std::vector<int>& triangle = drawn.triangle;
+  const PoolVector<int>& triangle = drawn.triangle;
   const int own = triangle[at];
   bool one_triangle = triangle[at - 1] == own && triangle[at + 1] == own;
   for (const std::size_t middle : {above, below}) {
@@ -158,8 +158,8 @@ class Tally {
   }
 
   // triangle_faces: empty where unknown; then each triangle is a face.
-  [[nodiscard]] PoseEvidence sum(const std::vector<int>& free_cells, const std::vector<int>& triangle_faces) {
-    std::vector<int> of_face(of_triangle_.size(), 0);
+  [[nodiscard]] PoseEvidence sum(const PoolVector<int>& free_cells, const std::vector<int>& triangle_faces) {
+    PoolVector<int> of_face(of_triangle_.size(), 0);
     for (std::size_t t = 0; t < of_triangle_.size(); ++t) {
       const std::size_t face = triangle_faces.empty() ? t : static_cast<std::size_t>(triangle_faces[t]);
       of_face[face] += of_triangle_[t].explained;
@@ -184,8 +184,8 @@ class Tally {
   };
   int weight_;
   PoseEvidence evidence_;
-  std::vector<Piece> of_triangle_;
-  std::vector<int> inner_of_region_;
+  PoolVector<Piece> of_triangle_;
+  PoolVector<int> inner_of_region_;
 };
 
 }  // namespace
@@ -202,14 +202,14 @@ EvidenceOptions judging_options(const SensorModel& sensor) {
 }
 
 LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
-                        const std::vector<DescribedRegion>& regions) {
+                        const PoolVector<DescribedRegion>& regions) {
   LabelledScan scan{image,
                     camera,
                     sensor,
                     regions,
-                    std::vector<float>(image.points.size()),
-                    std::vector<int>(image.points.size(), 0),
-                    std::vector<bool>(image.points.size(), false),
+                    PoolVector<float>(image.points.size()),
+                    PoolVector<int>(image.points.size(), 0),
+                    PoolVector<bool>(image.points.size(), false),
                     {}};
   for (std::size_t cell = 0; cell < image.points.size(); ++cell) scan.depths[cell] = image.points[cell].z();
   for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -277,13 +277,13 @@ void take_explained(const CompiledModel& model, const Pose& T_sensor_model, cons
                     LabelledScan& scan) {
   EvidenceOptions each = options;
   each.stride = 1;
-  std::vector<int> explained;
+  PoolVector<int> explained;
   look_at_cells(model, T_sensor_model, scan, each, [&](const DrawnCell& cell, Judgement judgement, bool) {
     if (judgement == Judgement::explained) explained.push_back(cell.cell);
   });
   for (const int cell : explained) take(scan, cell);
   for (std::size_t r = 0; r < scan.regions.size(); ++r) {
-    const std::vector<int>& cells = scan.regions[r].region.cells;
+    const PoolVector<int>& cells = scan.regions[r].region.cells;
     if (scan.free_cells[r] > kLeftOver * static_cast<double>(cells.size())) continue;
     for (const int cell : cells) take(scan, cell);
   }

@@ -6,10 +6,10 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "common/camera.h"
 #include "common/compiled_model.h"
+#include "common/memory_pool.h"
 #include "common/pose.h"
 #include "common/range_image.h"
 #include "common/region_attributes.h"
@@ -22,16 +22,16 @@ struct LabelledScan {
   const RangeImage& image;
   const PinholeCamera& camera;
   const SensorModel& sensor;
-  const std::vector<DescribedRegion>& regions;
-  std::vector<float> depths;    // by cell: z, NaN without data. Unit: mm.
-  std::vector<int> labels;      // by cell: 0 = no region, i + 1 = regions[i]
-  std::vector<bool> taken;      // by cell: explained by another object already, so that it contradicts this one
-  std::vector<int> free_cells;  // by region: those that are not taken
+  const PoolVector<DescribedRegion>& regions;
+  PoolVector<float> depths;    // by cell: z, NaN without data. Unit: mm.
+  PoolVector<int> labels;      // by cell: 0 = no region, i + 1 = regions[i]
+  PoolVector<bool> taken;      // by cell: explained by another object already, so that it contradicts this one
+  PoolVector<int> free_cells;  // by region: those that are not taken
 };
 
 // Nothing taken. The scan refers to all that is given.
 [[nodiscard]] LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
-                                      const std::vector<DescribedRegion>& regions);
+                                      const PoolVector<DescribedRegion>& regions);
 
 // Whether other objects explain at least half of a region.
 [[nodiscard]] bool is_taken(const LabelledScan& scan, int region);
@@ -64,7 +64,7 @@ struct PoseEvidence {
   double owned = 0.0;    // explained cells, each counting the share of its region that the object explains
   int pieces = 0;        // drawn triangles with at least 12 cells whose data say something: not missing, not hidden
   int pieces_found = 0;  // of them, those of which at least half of these cells are explained
-  std::vector<int> explained_of_region;  // cells, by region
+  PoolVector<int> explained_of_region;  // cells, by region
 };
 
 // The inputs of an acceptance model.

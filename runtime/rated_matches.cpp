@@ -52,10 +52,10 @@ MatchRater::MatchRater(const Database& database, const RatingOptions& options)
   }
 }
 
-std::vector<RegionMatches> MatchRater::rate(const std::vector<DescribedRegion>& regions) const {
+PoolVector<RegionMatches> MatchRater::rate(const PoolVector<DescribedRegion>& regions) const {
   const double faces = static_cast<double>(database_.faces().size());
   const double least = std::exp(options_.least_rating);
-  std::vector<RegionMatches> rated(regions.size());
+  PoolVector<RegionMatches> rated(regions.size());
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const bool cut = is_cut(regions[i]);
     for (std::size_t j = 0; j < database_.faces().size(); ++j) {

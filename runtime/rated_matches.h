@@ -6,8 +6,7 @@
 // improbable, not impossible. And attributes of a region that something cuts off are lower bounds.
 #pragma once
 
-#include <vector>
-
+#include "common/memory_pool.h"
 #include "common/region_attributes.h"
 #include "common/relation_attributes.h"
 #include "runtime/database.h"
@@ -28,14 +27,14 @@ struct RatedMatch {
 };
 
 // Matches of one region, by model and then by face.
-using RegionMatches = std::vector<RatedMatch>;
+using RegionMatches = PoolVector<RatedMatch>;
 
 class MatchRater {
  public:
   explicit MatchRater(const Database& database, const RatingOptions& options = {});
 
   // By region.
-  [[nodiscard]] std::vector<RegionMatches> rate(const std::vector<DescribedRegion>& regions) const;
+  [[nodiscard]] PoolVector<RegionMatches> rate(const PoolVector<DescribedRegion>& regions) const;
   // The same for two matches of one model, given how their regions stand to each other. cut: either region is.
   [[nodiscard]] double rate(const FacePair& pair, const RelationVector& relation, bool cut) const;
   // No two matches are rated higher together.

@@ -1,6 +1,5 @@
 #include "runtime/recognize.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "common/errors.h"
@@ -8,7 +7,6 @@
 #include "runtime/hypothesis_cliques.h"
 #include "runtime/nearest_data_cell.h"
 #include "runtime/nearest_data_point.h"
-#include "runtime/pose_covariance.h"
 #include "runtime/pose_evidence.h"
 #include "runtime/scan_context.h"
 #include "runtime/two_way_search.h"
@@ -17,17 +15,12 @@
 namespace foresight {
 namespace {
 
-std::vector<Label> prune(const HypothesisField& field, Pruning pruning) {
-  if (pruning == Pruning::none) return std::vector<Label>(field.matches.size(), kOn);
+PoolVector<Label> prune(const HypothesisField& field, Pruning pruning) {
+  if (pruning == Pruning::none) return PoolVector<Label>(field.matches.size(), kOn);
   return highest_confidence_first(field);
 }
 
 }  // namespace
-
-Pose pose_of(const std::array<double, 16>& T) {
-  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(T.data());
-  return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
-}
 
 LocalizationOptions localization_options(const RecognizeOptions& options) {
   LocalizationOptions localization;
@@ -75,16 +68,9 @@ void check_method(const RecognizeOptions& options, const Database& database, con
 
 namespace {
 
-// The paper searches as far as there are data, the two-way method within a short reach.
-std::unique_ptr<const NearestData> nearest_data(const RangeImage& image, const PinholeCamera& camera,
-                                                const SensorModel& sensor, Method method) {
-  if (method == Method::paper) return std::make_unique<NearestDataPoint>(image);
-  return std::make_unique<NearestDataCell>(image, camera, judging_options(sensor).stride);
-}
-
 // Sections III to V.
 void recognize_as_published(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,
-                            RecognitionResult& result) {
+                            Recognition& result) {
   Stopwatch watch;
   const Database& database = scan.database;
   const BackgroundOptions background = background_for(database.content().density);
@@ -101,94 +87,45 @@ void recognize_as_published(const ScanContext& scan, const RecognizeOptions& opt
   verify_in_order(scan, field, hypotheses, options, deadline, result);  // Section V
 }
 
-// Names of models are unique in a database.
-const CompiledModel& model_of(const Detection& detection, const Database& database) {
-  const auto& models = database.models();
-  return *std::find_if(models.begin(), models.end(),
-                       [&](const CompiledModel& model) { return model.name == detection.object; });
-}
-
-// w, x, y, z. Of the two that mean the same rotation, the one with w > 0, or whose first number other than 0 is.
-std::array<double, 4> canonical_quaternion(const Eigen::Matrix3d& rotation) {
-  const Eigen::Quaterniond q = Eigen::Quaterniond(rotation).normalized();
-  std::array<double, 4> numbers = {q.w(), q.x(), q.y(), q.z()};
-  const auto first = std::find_if(numbers.begin(), numbers.end(), [](double number) { return number != 0.0; });
-  if (first != numbers.end() && *first < 0.0) {
-    for (double& number : numbers) number = 0.0 - number;  // no -0.0
-  }
-  return numbers;
-}
-
 }  // namespace
+
+void recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
+               const RecognizeOptions& options, const Deadline& deadline, RecognitionResult& result,
+               SpareDetections& spare) {
+  Stopwatch total;
+  Stopwatch watch;
+  Recognition found;
+  const auto late = [&deadline] { return deadline && std::chrono::steady_clock::now() >= *deadline; };
+  const auto regions = extract_regions(image, camera, database.content().segmentation, late);
+  if (regions.empty() && late()) found.complete = false;
+  watch.lap(found.milliseconds.extract);
+  found.statistics.regions = static_cast<int>(regions.size());
+  found.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());
+  if (!regions.empty()) {
+    // The paper searches for data as far as there are any, the two-way method within a short reach.
+    if (options.method == Method::paper) {
+      const NearestDataPoint data(image);
+      watch.lap(found.milliseconds.localize);  // which the k-d tree serves
+      recognize_as_published({image, camera, database, regions, data}, options, deadline, found);
+    } else {
+      const NearestDataCell data(image, camera, judging_options(database.content().sensor).stride);
+      watch.lap(found.milliseconds.localize);
+      search_two_way({image, camera, database, regions, data}, options, deadline, found);
+    }
+    double timed = 0.0;  // by the searches
+    watch.lap(timed);
+  }
+  report(found, image, camera, database, result, spare);
+  watch.lap(result.milliseconds.verify);
+  total.lap(result.milliseconds.total);
+}
 
 RecognitionResult recognize(const RangeImage& image, const PinholeCamera& camera, const Database& database,
                             const RecognizeOptions& options, const Deadline& deadline) {
   RecognitionResult result;
-  Stopwatch total;
-  Stopwatch watch;
-  double ignored = 0.0;  // the searches time their own stages
-  const auto late = [&deadline] { return deadline && std::chrono::steady_clock::now() >= *deadline; };
-  const auto regions = extract_regions(image, camera, database.content().segmentation, late);
-  if (regions.empty() && late()) result.complete = false;
-  watch.lap(result.milliseconds.extract);
-  result.statistics.regions = static_cast<int>(regions.size());
-  result.statistics.possible_matches = static_cast<long>(regions.size()) * static_cast<long>(database.faces().size());
-  if (!regions.empty()) {
-    const ScanContext scan{image, camera, database, regions,
-                           nearest_data(image, camera, database.content().sensor, options.method)};
-    watch.lap(result.milliseconds.localize);  // which the k-d tree serves
-    if (options.method == Method::paper) {
-      recognize_as_published(scan, options, deadline, result);
-    } else {
-      search_two_way(scan, options, deadline, result);
-    }
-    watch.lap(ignored);
-    for (Detection& detection : result.detections) {
-      add_covariance(image, camera, database.content().sensor, model_of(detection, database), detection);
-    }
-    watch.lap(result.milliseconds.verify);
-  }
-  total.lap(result.milliseconds.total);
+  SpareDetections none;
+  recognize(image, camera, database, options, deadline, result, none);
   return result;
-}
-
-BoundingBox bounding_box(const CompiledModel& model) {
-  Eigen::AlignedBox3d extent;
-  for (const Eigen::Vector3f& vertex : model.vertices) extent.extend(vertex.cast<double>());
-  BoundingBox box;
-  if (extent.isEmpty()) return box;
-  Eigen::Vector3d::Map(box.centre.data()) = extent.center();
-  Eigen::Vector3d::Map(box.size.data()) = extent.sizes();
-  return box;
-}
-
-Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
-  Detection detection;
-  detection.object = model.name;
-  const Pose& pose = refined.localization.T_sensor_model;
-  const auto entry = [&](int row, int column) -> double& {
-    return detection.T_sensor_model[static_cast<std::size_t>(4 * row + column)];
-  };
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) entry(row, column) = pose.rotation(row, column);
-    entry(row, 3) = pose.translation[row];
-  }
-  entry(3, 3) = 1.0;
-  detection.matched = refined.verification.matched;
-  detection.coherent = refined.verification.coherent;
-  detection.occluding = refined.verification.occluding;
-  detection.score = detection.matched;
-  detection.quaternion = canonical_quaternion(pose.rotation);
-  const BoundingBox box = bounding_box(model);
-  detection.box_centre = box.centre;
-  detection.box_size = box.size;
-  return detection;
-}
-
-void add_covariance(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
-                    const CompiledModel& model, Detection& detection) {
-  const PoseCovariance covariance = pose_covariance(model, pose_of(detection.T_sensor_model), image, camera, sensor);
-  std::copy(covariance.data(), covariance.data() + covariance.size(), detection.covariance.begin());  // symmetric
 }
 
 RefinedPose refine_and_verify(const RangeImage& image, const PinholeCamera& camera, const CompiledModel& model,

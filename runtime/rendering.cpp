@@ -91,7 +91,7 @@ void draw(const std::array<const Corner*, 3>& corners, int triangle, const Pinho
 
 Rendering render(const CompiledModel& model, const Pose& T_sensor_model, const PinholeCamera& camera, int beyond) {
   Rendering rendering;
-  std::vector<Corner> corners;
+  PoolVector<Corner> corners;
   corners.reserve(model.vertices.size());
   Vector2d low(camera.columns + beyond, camera.rows + beyond);
   Vector2d high(-1.0 - beyond, -1.0 - beyond);

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "common/camera.h"
 #include "common/compiled_model.h"
+#include "common/memory_pool.h"
 #include "common/pose.h"
 
 namespace foresight {
@@ -16,10 +16,10 @@ struct Rendering {
   int first_column = 0;
   int rows = 0;
   int columns = 0;
-  std::vector<float> depth;             // z of the nearest surface, row by row. Unit: mm.
-  std::vector<int> triangle;            // of the model, -1 where nothing is shown
-  std::vector<Eigen::Vector3f> normal;  // by triangle, sensor frame, outward
-  std::vector<float> height;            // by triangle: of the camera over its plane; > 0 where it is drawn. Unit: mm.
+  PoolVector<float> depth;             // z of the nearest surface, row by row. Unit: mm.
+  PoolVector<int> triangle;            // of the model, -1 where nothing is shown
+  PoolVector<Eigen::Vector3f> normal;  // by triangle, sensor frame, outward
+  PoolVector<float> height;            // by triangle: of the camera over its plane; > 0 where it is drawn. Unit: mm.
 
   [[nodiscard]] int cell(int row, int column) const { return row * columns + column; }
 };

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <chrono>
-#include <memory>
-#include <vector>
 
 #include "common/camera.h"
+#include "common/memory_pool.h"
 #include "common/range_image.h"
 #include "common/region_attributes.h"
 #include "common/viewing_sphere.h"
@@ -19,8 +18,8 @@ struct ScanContext {
   const RangeImage& image;
   const PinholeCamera& camera;
   const Database& database;
-  const std::vector<DescribedRegion>& regions;
-  std::unique_ptr<const NearestData> data;
+  const PoolVector<DescribedRegion>& regions;
+  const NearestData& data;
   ViewingSphere sphere{kAspectCells};
 };
 
@@ -39,9 +38,9 @@ class Stopwatch {
 
 // Localization and verification of a start, counted and timed in the result.
 [[nodiscard]] RefinedPose refine(const ScanContext& scan, const CompiledModel& model, const Pose& start,
-                                 const RecognizeOptions& options, RecognitionResult& result, Stopwatch& watch);
+                                 const RecognizeOptions& options, Recognition& result, Stopwatch& watch);
 
 // Whether the limits of the options or the deadline end the search.
-[[nodiscard]] bool limits_reached(const RecognizeOptions& options, const Deadline& deadline, RecognitionResult& result);
+[[nodiscard]] bool limits_reached(const RecognizeOptions& options, const Deadline& deadline, Recognition& result);
 
 }  // namespace foresight

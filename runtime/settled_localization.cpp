@@ -39,7 +39,7 @@ SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& lab
                                 const RecognizeOptions& options, PoseChecker& settling) {
   const CompiledModel& compiled = scan.database.models()[static_cast<std::size_t>(model)];
   SettledPose result;
-  result.localization = localize(compiled, scan.sphere, start, *scan.data, near_localization_options(options));
+  result.localization = localize(compiled, scan.sphere, start, scan.data, near_localization_options(options));
   Pose& pose = result.localization.T_sensor_model;
   const EvidenceOptions fine = judging_options(labelled.sensor);
   const auto balance = [](const PoseEvidence& evidence) {

@@ -35,7 +35,7 @@ Interval extent(const Points& points, const Eigen::Vector3d& direction) {
   return interval;
 }
 
-Interval posed_extent(const std::vector<Eigen::Vector3d>& points, const Pose& pose, const Eigen::Vector3d& direction) {
+Interval posed_extent(const PoolVector<Eigen::Vector3d>& points, const Pose& pose, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d turned = pose.rotation.transpose() * direction;
   Interval interval = extent(points, turned);
   const double shift = direction.dot(pose.translation);
@@ -43,10 +43,9 @@ Interval posed_extent(const std::vector<Eigen::Vector3d>& points, const Pose& po
 }
 
 // Directions of the hull's sides; hulls given as any points yield all that matter through their extreme ones.
-std::vector<Eigen::Vector3d> side_directions(const std::vector<Eigen::Vector3d>& points,
-                                             const Eigen::Vector3d& normal) {
+PoolVector<Eigen::Vector3d> side_directions(const PoolVector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal) {
   // Gift wrapping in the plane: few points, and exact ones need no sorting.
-  std::vector<Eigen::Vector3d> directions;
+  PoolVector<Eigen::Vector3d> directions;
   const Eigen::Vector3d helper = std::abs(normal.x()) < 0.6 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   const Eigen::Vector3d u = normal.cross(helper).normalized();
   std::size_t start = 0;
@@ -114,7 +113,7 @@ Eigen::Vector3d corner(const PatchFrame& frame, const Eigen::Vector3d& axis, dou
 
 }  // namespace
 
-PatchFrame smallest_rectangle(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal) {
+PatchFrame smallest_rectangle(const PoolVector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal) {
   PatchFrame frame;
   frame.normal = normal;
   frame.centre = points.front();
@@ -139,8 +138,8 @@ PatchFrame smallest_rectangle(const std::vector<Eigen::Vector3d>& points, const 
 
 FaceShapes::FaceShapes(const Database& database) {
   for (const CompiledModel& model : database.models()) {
-    std::vector<Shape>& shapes = shapes_.emplace_back(model.faces.size());
-    std::vector<std::vector<int>> indices(model.faces.size());
+    PoolVector<Shape>& shapes = shapes_.emplace_back(model.faces.size());
+    PoolVector<PoolVector<int>> indices(model.faces.size());
     for (std::size_t t = 0; t < model.triangle_faces.size(); ++t) {
       auto& of_face = indices[static_cast<std::size_t>(model.triangle_faces[t])];
       of_face.insert(of_face.end(), model.triangles[t].begin(), model.triangles[t].end());
@@ -159,21 +158,21 @@ FaceShapes::FaceShapes(const Database& database) {
 const FaceShapes::Shape& FaceShapes::shape(int model, int face) const {
   return shapes_[static_cast<std::size_t>(model)][static_cast<std::size_t>(face)];
 }
-const std::vector<Eigen::Vector3d>& FaceShapes::vertices(int model, int face) const {
+const PoolVector<Eigen::Vector3d>& FaceShapes::vertices(int model, int face) const {
   return shape(model, face).vertices;
 }
 const PatchFrame& FaceShapes::frame(int model, int face) const { return shape(model, face).frame; }
 const Eigen::Vector3d& FaceShapes::major_axis(int model, int face) const { return shape(model, face).major_axis; }
 
-ScanRegions frame_regions(const std::vector<DescribedRegion>& regions) {
+ScanRegions frame_regions(const PoolVector<DescribedRegion>& regions) {
   ScanRegions scan{regions, {}};
   for (const DescribedRegion& region : regions)
     scan.frames.push_back(smallest_rectangle(region.hull, region.region.normal));
   return scan;
 }
 
-std::vector<Pose> pair_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,
-                              const MatchPair& pair) {
+PoolVector<Pose> pair_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,
+                             const MatchPair& pair) {
   const CompiledModel& model = database.models()[static_cast<std::size_t>(pair.a.model)];
   const auto region_of = [&](const RatedMatch& match) { return &scan.regions[static_cast<std::size_t>(match.region)]; };
   const auto face_of = [&](const RatedMatch& match) { return &model.faces[static_cast<std::size_t>(match.face)]; };
@@ -181,11 +180,11 @@ std::vector<Pose> pair_starts(const Database& database, const FaceShapes& shapes
       {{region_of(pair.a), face_of(pair.a)}, {region_of(pair.b), face_of(pair.b)}}};
   const std::optional<Pose> base = pose_from_matches(matches);
   if (!base) return {};
-  std::vector<Pose> starts = {*base};
+  PoolVector<Pose> starts = {*base};
   const Eigen::Vector3d line = matches[0].region->region.normal.cross(matches[1].region->region.normal);
   if (line.norm() < 0.17) return starts;  // as pose_from_matches: parallel normals leave more free than one line
   const Eigen::Vector3d free = line.normalized();
-  std::vector<double> shifts = {0.0};
+  PoolVector<double> shifts = {0.0};
   const auto add = [&](double shift) {
     for (const double known : shifts) {
       if (std::abs(known - shift) < kSameEnd) return;
@@ -207,14 +206,14 @@ bool same_handed(double of_regions, double of_faces) {
   return std::min(std::abs(of_regions), std::abs(of_faces)) >= kLeastVolume && (of_regions > 0.0) == (of_faces > 0.0);
 }
 
-std::vector<Pose> single_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,
-                                const RatedMatch& match, bool cut) {
+PoolVector<Pose> single_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,
+                               const RatedMatch& match, bool cut) {
   const DescribedRegion& region = scan.regions[static_cast<std::size_t>(match.region)];
   const PatchFrame& seen = scan.frames[static_cast<std::size_t>(match.region)];
   const PatchFrame& face = shapes.frame(match.model, match.face);
   const ModelFace& model_face =
       database.models()[static_cast<std::size_t>(match.model)].faces[static_cast<std::size_t>(match.face)];
-  std::vector<Pose> starts;
+  PoolVector<Pose> starts;
   for (int quarter = 0; quarter < 4; ++quarter) {
     const double sign = quarter < 2 ? 1.0 : -1.0;
     const bool turned = quarter % 2 == 1;

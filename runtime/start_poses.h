@@ -6,8 +6,8 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
+#include "common/memory_pool.h"
 #include "common/pose.h"
 #include "common/region_attributes.h"
 #include "runtime/database.h"
@@ -24,37 +24,37 @@ struct PatchFrame {
 };
 
 // Of the convex hull of points on a plane with this normal. REQUIRES: points not empty.
-[[nodiscard]] PatchFrame smallest_rectangle(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal);
+[[nodiscard]] PatchFrame smallest_rectangle(const PoolVector<Eigen::Vector3d>& points, const Eigen::Vector3d& normal);
 
 // Vertices and frames of the faces of all loaded models.
 class FaceShapes {
  public:
   explicit FaceShapes(const Database& database);
-  [[nodiscard]] const std::vector<Eigen::Vector3d>& vertices(int model, int face) const;
+  [[nodiscard]] const PoolVector<Eigen::Vector3d>& vertices(int model, int face) const;
   [[nodiscard]] const PatchFrame& frame(int model, int face) const;
   // Unit, direction of the larger second moment.
   [[nodiscard]] const Eigen::Vector3d& major_axis(int model, int face) const;
 
  private:
   struct Shape {
-    std::vector<Eigen::Vector3d> vertices;
+    PoolVector<Eigen::Vector3d> vertices;
     PatchFrame frame;
     Eigen::Vector3d major_axis = Eigen::Vector3d::Zero();
   };
   [[nodiscard]] const Shape& shape(int model, int face) const;
-  std::vector<std::vector<Shape>> shapes_;  // by model, by face
+  PoolVector<PoolVector<Shape>> shapes_;  // by model, by face
 };
 
 struct ScanRegions {
-  const std::vector<DescribedRegion>& regions;
-  std::vector<PatchFrame> frames;  // by region
+  const PoolVector<DescribedRegion>& regions;
+  PoolVector<PatchFrame> frames;  // by region
 };
-[[nodiscard]] ScanRegions frame_regions(const std::vector<DescribedRegion>& regions);
+[[nodiscard]] ScanRegions frame_regions(const PoolVector<DescribedRegion>& regions);
 
 // Rotation from the normals; along the line both planes leave free, starts at which the centroids coincide on average,
 // or an end of either region with that of its face. Empty when the matches do not determine a pose.
-[[nodiscard]] std::vector<Pose> pair_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,
-                                            const MatchPair& pair);
+[[nodiscard]] PoolVector<Pose> pair_starts(const Database& database, const FaceShapes& shapes, const ScanRegions& scan,
+                                           const MatchPair& pair);
 
 // Whether three regions and three faces are seen from the same side, by the triple products of their normals: those of
 // an object and of its mirror image have opposite signs. Not so where either is too small: such planes hardly fix a
@@ -64,7 +64,7 @@ struct ScanRegions {
 // All symmetric ways to lay the face on the region's plane: smallest rectangles with each other, their centres or,
 // where the region is cut, one of their corners together; where it is whole, also the principal axes with each other.
 // None when the region reaches beyond the face.
-[[nodiscard]] std::vector<Pose> single_starts(const Database& database, const FaceShapes& shapes,
-                                              const ScanRegions& scan, const RatedMatch& match, bool cut);
+[[nodiscard]] PoolVector<Pose> single_starts(const Database& database, const FaceShapes& shapes,
+                                             const ScanRegions& scan, const RatedMatch& match, bool cut);
 
 }  // namespace foresight

@@ -17,9 +17,11 @@ constexpr int kAtOnce = 16;  // hypotheses between two questions whether to stop
 constexpr double kAnyRating = -1e9;
 constexpr double kHalfAsWell = 0.5;
 
-std::vector<RatedMatch> best_rated(std::vector<RatedMatch> matches) {
-  std::stable_sort(matches.begin(), matches.end(),
-                   [](const RatedMatch& a, const RatedMatch& b) { return a.rating > b.rating; });
+// std::stable_sort would ask the heap for memory.
+PoolVector<RatedMatch> best_rated(PoolVector<RatedMatch> matches) {
+  const auto place = [](const RatedMatch& m) { return std::tuple(-m.rating, m.region, m.model, m.face); };
+  std::sort(matches.begin(), matches.end(),
+            [&](const RatedMatch& a, const RatedMatch& b) { return place(a) < place(b); });
   return matches;
 }
 
@@ -97,7 +99,7 @@ PoseCheck StartSearch::look(int model, const Pose& pose, double least_quality) {
 double StartSearch::least_quality(int index) const { return kHalfAsWell * model(index).acceptance.least_quality; }
 
 // Keeps the pose in `best` where it looks better.
-void StartSearch::consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const std::vector<int>& regions) {
+void StartSearch::consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const PoolVector<int>& regions) {
   PoseCheck check = look(best.model, pose, std::max(best.quality, least_quality(best.model)));
   const double quality = check.quality();
   if (quality <= best.quality) return;
@@ -138,12 +140,12 @@ void StartSearch::try_single(const RatedMatch& match) {
 
 // The matches that go best with both, of regions whose plane fixes the point of the pair's line and that see the
 // object from the same side: the sign of the triple product of the normals tells an object from its mirror image.
-std::vector<RatedMatch> StartSearch::thirds(const MatchPair& pair) {
+PoolVector<RatedMatch> StartSearch::thirds(const MatchPair& pair) {
   struct Third {
     double rating;
     RatedMatch match;
   };
-  std::vector<Third> found;
+  PoolVector<Third> found;
   const Eigen::Vector3d seen = region(pair.a).region.normal.cross(region(pair.b).region.normal);
   const Eigen::Vector3d modelled = face(pair.a).normal.cross(face(pair.b).normal);
   for (std::size_t r = 0; r < matches_.size(); ++r) {
@@ -164,7 +166,7 @@ std::vector<RatedMatch> StartSearch::thirds(const MatchPair& pair) {
                       return std::tuple(-a.rating, a.match.region, a.match.face) <
                              std::tuple(-b.rating, b.match.region, b.match.face);
                     });
-  std::vector<RatedMatch> best;
+  PoolVector<RatedMatch> best;
   for (std::size_t i = 0; i < count; ++i) best.push_back(found[i].match);
   return best;
 }
@@ -192,7 +194,7 @@ void StartSearch::keep(StartPose start, PoseCheck check) {
     check = std::move(at_refitted);
   }
   const CompiledModel& compiled = model(start.model);
-  std::vector<std::size_t>& known = of_model_[static_cast<std::size_t>(start.model)];
+  PoolVector<std::size_t>& known = of_model_[static_cast<std::size_t>(start.model)];
   const Eigen::Vector3d centre = start.T_sensor_model * compiled.centre;
   const double least_trace = 1.0 + 2.0 * std::cos(options_.same_angle);
   for (const std::size_t index : known) {
@@ -207,12 +209,12 @@ void StartSearch::keep(StartPose start, PoseCheck check) {
   starts_.push_back(std::move(start));
 }
 
-std::vector<StartPose> find_starts(const Database& database, const LabelledScan& scan,
-                                   const StartSearchOptions& options, StartSearchCounts& counts) {
+PoolVector<StartPose> find_starts(const Database& database, const LabelledScan& scan, const StartSearchOptions& options,
+                                  StartSearchCounts& counts) {
   StartSearch search(database, scan, options, counts);
   while (search.look_further(std::numeric_limits<int>::max())) {
   }
-  std::vector<StartPose> starts = search.starts();
+  PoolVector<StartPose> starts = search.starts();
   std::stable_sort(starts.begin(), starts.end(), [](const StartPose& a, const StartPose& b) {
     return std::tuple(-a.quality, a.model) < std::tuple(-b.quality, b.model);
   });

@@ -6,10 +6,9 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <utility>
-#include <vector>
 
+#include "common/memory_pool.h"
 #include "common/pose.h"
 #include "runtime/database.h"
 #include "runtime/hypothesis_queue.h"
@@ -22,8 +21,8 @@ namespace foresight {
 struct StartPose {
   int model = 0;
   Pose T_sensor_model;
-  double quality = 0.0;      // PoseCheck::quality
-  std::vector<int> regions;  // that the hypothesis matched: one, two or three
+  double quality = 0.0;     // PoseCheck::quality
+  PoolVector<int> regions;  // that the hypothesis matched: one, two or three
 };
 
 struct StartSearchOptions {
@@ -63,7 +62,7 @@ class StartSearch {
   void look_for_rivals(int region, int second, const Stop& stop = {});
 
   // In the order they were found. A start that settles where another did replaces it where it looks better.
-  [[nodiscard]] const std::vector<StartPose>& starts() const { return starts_; }
+  [[nodiscard]] const PoolVector<StartPose>& starts() const { return starts_; }
 
  private:
   [[nodiscard]] const CompiledModel& model(int index) const {
@@ -79,10 +78,10 @@ class StartSearch {
   [[nodiscard]] bool stopped(const Stop& stop) const;
   PoseCheck look(int model, const Pose& pose, double least_quality);
   [[nodiscard]] double least_quality(int index) const;
-  void consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const std::vector<int>& regions);
+  void consider(StartPose& best, PoseCheck& best_check, const Pose& pose, const PoolVector<int>& regions);
   void try_pair(const MatchPair& pair);
   void try_single(const RatedMatch& match);
-  [[nodiscard]] std::vector<RatedMatch> thirds(const MatchPair& pair);
+  [[nodiscard]] PoolVector<RatedMatch> thirds(const MatchPair& pair);
   [[nodiscard]] std::optional<double> rate_third(const MatchPair& pair, const RatedMatch& third);
   void keep(StartPose start, PoseCheck check);
 
@@ -93,20 +92,20 @@ class StartSearch {
   ScanRegions regions_;
   FaceShapes shapes_;
   MatchRater rater_;
-  std::vector<RegionMatches> matches_;
+  PoolVector<RegionMatches> matches_;
   RegionRelations relations_;
   PoseChecker checker_;
   HypothesisQueue queue_;
-  int pairs_ = 0;                    // looked at
-  std::vector<RatedMatch> singles_;  // the best rated first
+  int pairs_ = 0;                   // looked at
+  PoolVector<RatedMatch> singles_;  // the best rated first
   std::size_t next_single_ = 0;
-  std::set<std::pair<int, int>> rivals_;  // regions for which they were looked for
-  std::vector<StartPose> starts_;
-  std::vector<std::vector<std::size_t>> of_model_;  // starts
+  PoolSet<std::pair<int, int>> rivals_;  // regions for which they were looked for
+  PoolVector<StartPose> starts_;
+  PoolVector<PoolVector<std::size_t>> of_model_;  // starts
 };
 
 // The whole search at once, best quality first.
-[[nodiscard]] std::vector<StartPose> find_starts(const Database& database, const LabelledScan& scan,
-                                                 const StartSearchOptions& options, StartSearchCounts& counts);
+[[nodiscard]] PoolVector<StartPose> find_starts(const Database& database, const LabelledScan& scan,
+                                                const StartSearchOptions& options, StartSearchCounts& counts);
 
 }  // namespace foresight

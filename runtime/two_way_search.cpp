@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "runtime/canonical_pose.h"
 #include "runtime/interpenetration.h"
@@ -47,7 +46,7 @@ StartSearchOptions start_search_options(const RecognizeOptions& options) {
 class TwoWaySearch {
  public:
   TwoWaySearch(const ScanContext& scan, const RecognizeOptions& options, const TwoWayOptions& two_way,
-               const Deadline& deadline, RecognitionResult& result)
+               const Deadline& deadline, Recognition& result)
       : scan_(scan),
         options_(options),
         two_way_(two_way),
@@ -84,13 +83,13 @@ class TwoWaySearch {
   [[nodiscard]] const StartPose& start_pose(std::size_t start) const { return search_.starts()[start]; }
   // Of all starts for which `wanted` holds, the best looking first.
   template <typename Wanted>
-  [[nodiscard]] std::vector<std::size_t> best_starts(const Wanted& wanted) const {
-    std::vector<std::size_t> best;
+  [[nodiscard]] PoolVector<std::size_t> best_starts(const Wanted& wanted) const {
+    PoolVector<std::size_t> best;
     for (std::size_t i = 0; i < search_.starts().size(); ++i) {
       if (wanted(i)) best.push_back(i);
     }
-    std::stable_sort(best.begin(), best.end(),
-                     [this](std::size_t a, std::size_t b) { return start_pose(a).quality > start_pose(b).quality; });
+    const auto place = [this](std::size_t i) { return std::pair(-start_pose(i).quality, i); };
+    std::sort(best.begin(), best.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
     return best;
   }
   [[nodiscard]] bool out_of_limits() const { return limits_reached(options_, deadline_, result_); }
@@ -121,7 +120,7 @@ class TwoWaySearch {
 
   // Counts tries of the same regions with one model.
   int& tries_of(const StartPose& start) {
-    std::vector<int> key = start.regions;
+    PoolVector<int> key = start.regions;
     std::sort(key.begin(), key.end());
     key.push_back(start.model);
     return tries_[key];
@@ -234,11 +233,11 @@ class TwoWaySearch {
   // What would show the same matches the regions of which the pose explains most.
   void look_for_rivals(const Candidate& candidate) {
     watch_.lap(result_.milliseconds.verify);
-    std::map<int, double> cells;
+    PoolMap<int, double> cells;
     for (const FaceSupport& support : checker_.check(start_pose(candidate.start).model, candidate.pose()).supports) {
       if (!is_taken(labelled_, support.region)) cells[support.region] += support.cells;
     }
-    std::vector<std::pair<double, int>> regions;
+    PoolVector<std::pair<double, int>> regions;
     for (const auto& [region, count] : cells) regions.push_back({-count, region});
     std::sort(regions.begin(), regions.end());
     if (!regions.empty()) {
@@ -249,7 +248,7 @@ class TwoWaySearch {
   }
 
   // Other starts that rest on the same regions, the best looking first.
-  [[nodiscard]] std::vector<std::size_t> rivals(const Candidate& candidate) const {
+  [[nodiscard]] PoolVector<std::size_t> rivals(const Candidate& candidate) const {
     return best_starts([&](std::size_t i) {
       return i != candidate.start && shares_region(start_pose(i), start_pose(candidate.start)) &&
              !uses_taken(start_pose(i));
@@ -267,34 +266,38 @@ class TwoWaySearch {
     const CanonicalPose reported = canonical_choice(model, candidate.pose());
     RefinedPose pose{candidate.localization, {}};
     pose.localization.T_sensor_model = reported.T_sensor_model;
-    pose.verification = verify(model, scan_.sphere, reported.T_sensor_model, scan_.image, scan_.camera, *scan_.data,
+    pose.verification = verify(model, scan_.sphere, reported.T_sensor_model, scan_.image, scan_.camera, scan_.data,
                                verification_options(options_));
-    Detection detection = to_detection(model, pose);
-    detection.rank = candidate.rank;
-    detection.score = candidate.probability;
-    list_supports(start_pose(candidate.start).model, reported.T_sensor_model, detection);
-    detection.ambiguous_with = alternatives(candidate);
+    FoundObject found;
+    found.model = start_pose(candidate.start).model;
+    found.pose = pose;
+    found.score = candidate.probability;
+    found.rank = candidate.rank;
+    list_supports(reported.T_sensor_model, found);
+    found.alternatives = alternatives(candidate);
     take_explained(model, candidate.pose(), fine_, labelled_);
     accepted_.push_back({start_pose(candidate.start).model, candidate.pose()});
-    result_.detections.push_back(std::move(detection));
+    result_.objects.push_back(std::move(found));
   }
 
   // Faces with the regions that show them: each region once, with the face that most of it shows.
-  void list_supports(int model, const Pose& pose, Detection& detection) {
-    std::vector<FaceSupport> supports = checker_.check(model, pose).supports;
-    std::stable_sort(supports.begin(), supports.end(),
-                     [](const FaceSupport& a, const FaceSupport& b) { return a.cells > b.cells; });
-    for (const FaceSupport& support : supports) {
-      if (std::count(detection.regions.begin(), detection.regions.end(), support.region) > 0) continue;
-      detection.faces.push_back(support.face);
-      detection.regions.push_back(support.region);
+  void list_supports(const Pose& pose, FoundObject& found) {
+    const PoolVector<FaceSupport> supports = checker_.check(found.model, pose).supports;
+    PoolVector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < supports.size(); ++i) order.push_back({-supports[i].cells, i});
+    std::sort(order.begin(), order.end());
+    for (const auto& [cells, i] : order) {
+      const FaceSupport& support = supports[i];
+      if (std::count(found.regions.begin(), found.regions.end(), support.region) > 0) continue;
+      found.faces.push_back(support.face);
+      found.regions.push_back(support.region);
     }
   }
 
   // What else would show the same: other poses and objects that fit where this one does.
-  std::vector<Alternative> alternatives(const Candidate& candidate) {
+  PoolVector<FoundAlternative> alternatives(const Candidate& candidate) {
     const Rendering view = drawn(candidate.start, candidate.pose());
-    std::vector<Candidate> found = {candidate};
+    PoolVector<Candidate> found = {candidate};
     int looked_at = 0;
     for (const std::size_t i : rivals(candidate)) {
       const StartPose& rival = start_pose(i);
@@ -307,17 +310,16 @@ class TwoWaySearch {
       if (same_share(view, drawn(i, other.pose()), two_way_.same_distance) < two_way_.same_view) continue;
       found.push_back(other);
     }
-    std::vector<Alternative> listed;
+    PoolVector<FoundAlternative> listed;
     for (std::size_t k = 1; k < found.size(); ++k) {
-      const CompiledModel& model = model_of(found[k].start);
-      const RefinedPose pose{{canonical_pose(model, found[k].pose()), 0.0, 0}, {}};
-      listed.push_back({model.name, to_detection(model, pose).T_sensor_model, found[k].probability});
+      const Pose canonical = canonical_pose(model_of(found[k].start), found[k].pose());
+      listed.push_back({start_pose(found[k].start).model, canonical, found[k].probability});
     }
     return listed;
   }
 
   // Whether one of the candidates is this pose of this model, but for a symmetry.
-  [[nodiscard]] bool already_known(const std::vector<Candidate>& found, std::size_t start, const Pose& pose) const {
+  [[nodiscard]] bool already_known(const PoolVector<Candidate>& found, std::size_t start, const Pose& pose) const {
     const CompiledModel& model = model_of(start);
     const StartSearchOptions same;
     const auto equals = [&](const Pose& a, const Pose& b) {
@@ -335,11 +337,12 @@ class TwoWaySearch {
 
   // The most probable first. What the others rest on may have been taken since: their evidence is read again.
   void decide_among_candidates() {
-    std::stable_sort(candidates_.begin(), candidates_.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.probability > b.probability; });
+    const auto place = [](const Candidate& c) { return std::pair(-c.probability, c.rank); };
+    std::sort(candidates_.begin(), candidates_.end(),
+              [&](const Candidate& a, const Candidate& b) { return place(a) < place(b); });
     for (Candidate& candidate : candidates_) {
       const auto most = static_cast<std::size_t>(options_.most_detections);
-      if (most > 0 && result_.detections.size() >= most) break;
+      if (most > 0 && result_.objects.size() >= most) break;
       if (uses_taken(start_pose(candidate.start))) continue;
       candidate.probability =
           probability_right(model_of(candidate.start).acceptance, evidence(candidate.start, candidate.pose()));
@@ -352,25 +355,25 @@ class TwoWaySearch {
   const RecognizeOptions& options_;
   const TwoWayOptions two_way_;
   const Deadline& deadline_;
-  RecognitionResult& result_;
+  Recognition& result_;
   LabelledScan labelled_;
   EvidenceOptions fine_;
   PoseChecker checker_;
   PoseChecker settling_;
   StartSearchCounts counts_;
   StartSearch search_;
-  std::vector<bool> tried_;  // by start
-  int order_ = 0;            // starts taken up so far
-  std::vector<Candidate> candidates_;
-  std::vector<AcceptedPose> accepted_;
-  std::map<std::vector<int>, int> tries_;  // by regions and model
+  PoolVector<bool> tried_;  // by start
+  int order_ = 0;           // starts taken up so far
+  PoolVector<Candidate> candidates_;
+  PoolVector<AcceptedPose> accepted_;
+  PoolMap<PoolVector<int>, int> tries_;  // by regions and model
   Stopwatch watch_;
 };
 
 }  // namespace
 
 void search_two_way(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,
-                    RecognitionResult& result, const TwoWayOptions& two_way) {
+                    Recognition& result, const TwoWayOptions& two_way) {
   TwoWaySearch(scan, options, two_way, deadline, result).run();
 }
 

@@ -33,6 +33,6 @@ struct TwoWayOptions {
 
 // Fills detections, statistics and times. REQUIRES: check_method passes.
 void search_two_way(const ScanContext& scan, const RecognizeOptions& options, const Deadline& deadline,
-                    RecognitionResult& result, const TwoWayOptions& two_way = {});
+                    Recognition& result, const TwoWayOptions& two_way = {});
 
 }  // namespace foresight

@@ -19,8 +19,8 @@ bool occludes(const Eigen::Vector3d& point, const RangeImage& image, const Pinho
 }
 
 // beta: of the visible neighbours of all visible points, the matched fraction. 0 when there are no neighbours.
-double coherent_fraction(const SurfaceTemplate& surface, const std::vector<int>& visible,
-                         const std::vector<Sight>& sight) {
+double coherent_fraction(const SurfaceTemplate& surface, const PoolVector<int>& visible,
+                         const PoolVector<Sight>& sight) {
   long neighbours = 0;
   long matched = 0;
   for (const int i : visible) {
@@ -39,14 +39,14 @@ Verification verify(const CompiledModel& model, const ViewingSphere& sphere, con
                     const RangeImage& image, const PinholeCamera& camera, const NearestData& data,
                     const VerificationOptions& options) {
   assert(camera.rows == image.rows && camera.columns == image.columns);
-  const std::vector<int> visible = visible_points(model, sphere, T_sensor_model);
+  const PoolVector<int> visible = visible_points(model, sphere, T_sensor_model);
   Verification verification;
   verification.visible = static_cast<int>(visible.size());
   if (visible.empty()) return verification;
 
   // Distances up to the limit match; nearer than the next number is just that.
   const float reach = std::nextafter(static_cast<float>(options.match_distance), std::numeric_limits<float>::max());
-  std::vector<Sight> sight(model.surface.points.size(), Sight::hidden);
+  PoolVector<Sight> sight(model.surface.points.size(), Sight::hidden);
   int matched = 0;
   int occluding = 0;
   for (const int i : visible) {

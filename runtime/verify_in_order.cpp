@@ -11,10 +11,10 @@ namespace {
 class VerificationInOrder {
  public:
   VerificationInOrder(const ScanContext& scan, const HypothesisField& field, const RecognizeOptions& options,
-                      RecognitionResult& result)
+                      Recognition& result)
       : scan_(scan), field_(field), options_(options), result_(result), taken_(scan.regions.size(), false) {}
 
-  void run(const std::vector<ObjectHypothesis>& hypotheses, const Deadline& deadline) {
+  void run(const PoolVector<ObjectHypothesis>& hypotheses, const Deadline& deadline) {
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
       if (uses_taken(hypotheses[i])) continue;
       if (limits_reached(options_, deadline, result_)) return;
@@ -32,7 +32,7 @@ class VerificationInOrder {
 
   // The pose of the matches, none where they do not determine one.
   [[nodiscard]] std::optional<Pose> estimate_pose(const ObjectHypothesis& hypothesis) const {
-    std::vector<RegionFaceMatch> matches;
+    PoolVector<RegionFaceMatch> matches;
     for (const int index : hypothesis.matches) {
       const auto region = static_cast<std::size_t>(match(index).region);
       matches.push_back({&scan_.regions[region], &scan_.database.face(match(index).face)});
@@ -46,34 +46,37 @@ class VerificationInOrder {
     const CompiledModel& model = scan_.database.models()[static_cast<std::size_t>(hypothesis.model)];
     const RefinedPose refined = refine(scan_, model, *start, options_, result_, watch_);
     if (!refined.verification.accepted) return;
-    Detection detection = to_detection(model, refined);
-    detection.rank = rank;
+    FoundObject found;
+    found.model = hypothesis.model;
+    found.pose = refined;
+    found.score = refined.verification.matched;
+    found.rank = rank;
     for (const int index : hypothesis.matches) {
-      detection.faces.push_back(scan_.database.faces()[static_cast<std::size_t>(match(index).face)].face);
-      detection.regions.push_back(match(index).region);
+      found.faces.push_back(scan_.database.faces()[static_cast<std::size_t>(match(index).face)].face);
+      found.regions.push_back(match(index).region);
     }
-    for (const int region : detection.regions) taken_[static_cast<std::size_t>(region)] = true;
+    for (const int region : found.regions) taken_[static_cast<std::size_t>(region)] = true;
     const Pose& pose = refined.localization.T_sensor_model;
     for (const int region : explained_regions(model, pose, scan_.image, scan_.regions)) {
       taken_[static_cast<std::size_t>(region)] = true;
     }
-    result_.detections.push_back(std::move(detection));
+    result_.objects.push_back(std::move(found));
     watch_.lap(result_.milliseconds.verify);
   }
 
   const ScanContext& scan_;
   const HypothesisField& field_;
   const RecognizeOptions& options_;
-  RecognitionResult& result_;
-  std::vector<bool> taken_;  // by region
+  Recognition& result_;
+  PoolVector<bool> taken_;  // by region
   Stopwatch watch_;
 };
 
 }  // namespace
 
 void verify_in_order(const ScanContext& scan, const HypothesisField& field,
-                     const std::vector<ObjectHypothesis>& hypotheses, const RecognizeOptions& options,
-                     const Deadline& deadline, RecognitionResult& result) {
+                     const PoolVector<ObjectHypothesis>& hypotheses, const RecognizeOptions& options,
+                     const Deadline& deadline, Recognition& result) {
   VerificationInOrder(scan, field, options, result).run(hypotheses, deadline);
 }
 

@@ -13,7 +13,7 @@ namespace foresight {
 namespace {
 
 // Top and right side of a box of 40 x 60 x 100 mm.
-std::vector<DescribedRegion> top_and_right() {
+PoolVector<DescribedRegion> top_and_right() {
   return {test::rectangle({0, 0, 100}, {40, 0, 0}, {0, 60, 0}), test::rectangle({40, 0, 0}, {0, 60, 0}, {0, 0, 100})};
 }
 
@@ -38,7 +38,7 @@ TEST(CadField, matches_each_region_with_the_faces_of_its_size) {
   ASSERT_EQ(field.matches.size(), 4U);  // bottom and top; left and right
   EXPECT_EQ(field.by_region[0].size(), 2U);
   EXPECT_EQ(field.by_region[1].size(), 2U);
-  for (const std::vector<int>& supports : field.supports) EXPECT_EQ(supports.size(), 2U);  // all at right angles
+  for (const PoolVector<int>& supports : field.supports) EXPECT_EQ(supports.size(), 2U);  // all at right angles
 }
 
 TEST(CadField, lets_a_region_be_part_of_a_larger_face_only_without_a_lower_bound) {
@@ -56,10 +56,10 @@ TEST(CadField, supports_only_pairs_that_meet_at_the_angle_of_the_faces) {
   const CadModel box = test::make_box(40, 60, 100);
   const Database database = test::database_of_copies(box, 1);
   const CadGeometry geometry = cad_geometry(box);
-  std::vector<DescribedRegion> regions = top_and_right();
+  PoolVector<DescribedRegion> regions = top_and_right();
   const double lean = 20.0 * std::numbers::pi / 180.0;
   regions[1].region.normal = Eigen::Vector3d(std::cos(lean), 0.0, std::sin(lean));
-  for (const std::vector<int>& supports : cad_field(regions, database, {&geometry}, {}).supports) {
+  for (const PoolVector<int>& supports : cad_field(regions, database, {&geometry}, {}).supports) {
     EXPECT_TRUE(supports.empty());
   }
 }

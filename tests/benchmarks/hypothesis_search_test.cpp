@@ -12,10 +12,10 @@ namespace foresight {
 namespace {
 
 // Top, right and front side of a box of 40 x 60 x 100 mm: the second is the largest, the first the smallest.
-const std::vector<DescribedRegion>& three_sides() {
-  static const std::vector<DescribedRegion> regions = {test::rectangle({0, 0, 100}, {40, 0, 0}, {0, 60, 0}),
-                                                       test::rectangle({40, 0, 0}, {0, 60, 0}, {0, 0, 100}),
-                                                       test::rectangle({0, 0, 0}, {40, 0, 0}, {0, 0, 100})};
+const PoolVector<DescribedRegion>& three_sides() {
+  static const PoolVector<DescribedRegion> regions = {test::rectangle({0, 0, 100}, {40, 0, 0}, {0, 60, 0}),
+                                                      test::rectangle({40, 0, 0}, {0, 60, 0}, {0, 0, 100}),
+                                                      test::rectangle({0, 0, 0}, {40, 0, 0}, {0, 0, 100})};
   return regions;
 }
 

@@ -19,7 +19,7 @@ struct StepScene {
   ScoredObject object = scored_object(cad);
   std::vector<CompiledModel> models;
   Scene scene;
-  std::vector<DescribedRegion> regions;
+  PoolVector<DescribedRegion> regions;
   Clique truth;
 
   StepScene() {

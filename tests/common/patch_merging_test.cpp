@@ -41,7 +41,7 @@ RangeImage roof_image() {
       {{{0, -200, 900}, {200 * c, 0, 200 * s}, {0, 400, 0}}, {{0, -200, 900}, {-200 * c, 0, 200 * s}, {0, 400, 0}}});
 }
 
-std::vector<int> no_labels(const RangeImage& image) { return std::vector<int>(image.points.size(), 0); }
+PoolVector<int> no_labels(const RangeImage& image) { return PoolVector<int>(image.points.size(), 0); }
 
 PointSums sums_at(double z, int count) {
   PointSums sums;
@@ -51,27 +51,27 @@ PointSums sums_at(double z, int count) {
 
 TEST(MergeBestFirst, merges_the_nearest_pair_first) {
   // Three parallel patches; the middle one fits with either neighbour, but not with both.
-  std::vector<PointSums> patches = {sums_at(900.0, 100), sums_at(901.0, 100), sums_at(901.9, 100)};
-  const std::vector<int> merged = merge_best_first(patches, {{0, 1}, {1, 2}}, 0.6);
+  PoolVector<PointSums> patches = {sums_at(900.0, 100), sums_at(901.0, 100), sums_at(901.9, 100)};
+  const PoolVector<int> merged = merge_best_first(patches, {{0, 1}, {1, 2}}, 0.6);
   EXPECT_NE(merged[0], merged[1]);
   EXPECT_EQ(merged[1], merged[2]);
   EXPECT_EQ(patches[static_cast<std::size_t>(merged[1])].count(), 200.0);
 }
 
 TEST(MergeBestFirst, a_small_patch_cannot_hide_in_a_large_one) {
-  std::vector<PointSums> patches = {sums_at(900.0, 10000), sums_at(905.0, 10)};
-  const std::vector<int> merged = merge_best_first(patches, {{0, 1}}, 1.0);
+  PoolVector<PointSums> patches = {sums_at(900.0, 10000), sums_at(905.0, 10)};
+  const PoolVector<int> merged = merge_best_first(patches, {{0, 1}}, 1.0);
   EXPECT_NE(merged[0], merged[1]);
 }
 
 TEST(MergeBestFirst, leaves_apart_what_does_not_touch) {
-  std::vector<PointSums> patches = {sums_at(900.0, 100), sums_at(900.0, 100)};
-  EXPECT_EQ(merge_best_first(patches, {}, 1.0), (std::vector<int>{0, 1}));
+  PoolVector<PointSums> patches = {sums_at(900.0, 100), sums_at(900.0, 100)};
+  EXPECT_EQ(merge_best_first(patches, {}, 1.0), (PoolVector<int>{0, 1}));
 }
 
 // Labels 1 to the left of a column and 2 from another on, 0 between them.
-std::vector<int> halves(const RangeImage& image, int left_end, int right_begin) {
-  std::vector<int> labels = no_labels(image);
+PoolVector<int> halves(const RangeImage& image, int left_end, int right_begin) {
+  PoolVector<int> labels = no_labels(image);
   for (int cell = 0; cell < image.size(); ++cell) {
     const int column = cell % image.columns;
     labels[static_cast<std::size_t>(cell)] = column < left_end ? 1 : column >= right_begin ? 2 : 0;
@@ -79,7 +79,7 @@ std::vector<int> halves(const RangeImage& image, int left_end, int right_begin) 
   return labels;
 }
 
-std::vector<int> merged_labels(const RangeImage& image, const std::vector<int>& labels) {
+PoolVector<int> merged_labels(const RangeImage& image, const PoolVector<int>& labels) {
   PlaneLabels found(image.size());
   found.labels = labels;
   found.sums.resize(static_cast<std::size_t>(*std::max_element(labels.begin(), labels.end())));
@@ -95,7 +95,7 @@ std::vector<int> merged_labels(const RangeImage& image, const std::vector<int>& 
 
 TEST(MergeTouchingPlanes, joins_coplanar_pieces_that_touch) {
   const RangeImage image = sloping_image(40.0);
-  const std::vector<int> labels = merged_labels(image, halves(image, 32, 32));
+  const PoolVector<int> labels = merged_labels(image, halves(image, 32, 32));
   EXPECT_EQ(std::set<int>(labels.begin(), labels.end()).size(), 1U);
   EXPECT_NE(labels.front(), 0);
 }
@@ -112,12 +112,12 @@ TEST(MergeTouchingPlanes, leaves_coplanar_pieces_apart_that_do_not_touch) {
 
 TEST(MergeTouchingPlanes, joins_chains_of_pieces_and_keeps_free_cells_free) {
   const RangeImage image = flat_image();
-  std::vector<int> labels = no_labels(image);
+  PoolVector<int> labels = no_labels(image);
   for (int cell = 0; cell < image.size(); ++cell) {
     const int row = cell / image.columns;
     labels[static_cast<std::size_t>(cell)] = row < 8 ? 0 : row / 8;
   }
-  const std::vector<int> merged = merged_labels(image, labels);
+  const PoolVector<int> merged = merged_labels(image, labels);
   EXPECT_EQ(std::set<int>(merged.begin(), merged.end()).size(), 2U);
   for (int cell = 0; cell < image.size(); ++cell) {
     EXPECT_EQ(merged[static_cast<std::size_t>(cell)] == 0, labels[static_cast<std::size_t>(cell)] == 0);

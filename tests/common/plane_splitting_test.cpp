@@ -50,7 +50,7 @@ struct Case {
 };
 
 // The piece around a cell by flooding it.
-std::set<int> piece_around(int cell, const std::vector<int>& labels, const CellConnectivity& connectivity) {
+std::set<int> piece_around(int cell, const PoolVector<int>& labels, const CellConnectivity& connectivity) {
   std::set<int> piece = {cell};
   std::vector<int> open = {cell};
   while (!open.empty()) {
@@ -68,9 +68,9 @@ TEST(SplitPlanes, makes_a_plane_of_each_large_piece_in_the_order_of_first_cells)
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Case made(seed);
     const CellConnectivity connectivity(made.image, quiet());
-    const std::vector<int> before = made.found.labels;
+    const PoolVector<int> before = made.found.labels;
     split_planes(made.image, connectivity, quiet(), made.found);
-    std::vector<int> expected(before.size(), 0);
+    PoolVector<int> expected(before.size(), 0);
     std::set<int> seen;
     int planes = 0;
     for (int cell = 0; cell < made.image.size(); ++cell) {

@@ -18,8 +18,8 @@ using test::Rectangle;
 constexpr double kDepth = 900.0;
 
 struct Cut {
-  std::vector<Region> regions;
-  std::vector<double> shares;
+  PoolVector<Region> regions;
+  PoolVector<double> shares;
 };
 
 Cut cut_of(const RangeImage& image) {
@@ -35,8 +35,8 @@ Cut cut_of(const std::vector<Rectangle>& scene, double noise = 0.0) {
 }
 
 // Shares of the regions that lie at this depth, in order of size.
-std::vector<double> shares_at(const Cut& cut, double depth) {
-  std::vector<double> shares;
+PoolVector<double> shares_at(const Cut& cut, double depth) {
+  PoolVector<double> shares;
   for (std::size_t r = 0; r < cut.regions.size(); ++r) {
     if (std::abs(-cut.regions[r].offset - depth) < 1.0) shares.push_back(cut.shares[r]);
   }
@@ -60,7 +60,7 @@ TEST(CutShares, a_face_alone_is_not_cut) {
 
 TEST(CutShares, what_lies_farther_away_does_not_cut) {
   for (const double beyond : {10.0, 50.0, 300.0}) {
-    const std::vector<double> shares =
+    const PoolVector<double> shares =
         shares_at(cut_of({facing({0, 0, kDepth}, 100, 80), facing({0, 0, kDepth + beyond}, 900, 900)}), kDepth);
     ASSERT_EQ(shares.size(), 1U);
     EXPECT_EQ(shares[0], 0.0) << beyond;
@@ -72,10 +72,10 @@ TEST(CutShares, what_lies_nearer_cuts_the_side_it_hides) {
     // The left end of the face at x = -60 shows `width` of it beside the bar.
     const double edge = (-60.0 + width) * 700.0 / kDepth;
     const Cut cut = cut_of({facing({0, 0, kDepth}, 120, 80), upright_bar(edge, 150, 700)});
-    const std::vector<double> hidden = shares_at(cut, kDepth);
+    const PoolVector<double> hidden = shares_at(cut, kDepth);
     ASSERT_EQ(hidden.size(), 1U);
     EXPECT_NEAR(hidden[0], side_share(80, width), 0.02) << width;
-    const std::vector<double> bar = shares_at(cut, 700.0);
+    const PoolVector<double> bar = shares_at(cut, 700.0);
     ASSERT_EQ(bar.size(), 1U);
     EXPECT_GT(bar[0], 0.05);  // only at the border of the image, which it reaches on three sides
   }
@@ -83,11 +83,11 @@ TEST(CutShares, what_lies_nearer_cuts_the_side_it_hides) {
 
 TEST(CutShares, only_sides_towards_something_nearer_are_cut) {
   const Cut cut = cut_of({facing({-60, 0, kDepth}, 60, 80), facing({60, 0, 700}, 50, 300)});
-  const std::vector<double> shares = shares_at(cut, kDepth);
+  const PoolVector<double> shares = shares_at(cut, kDepth);
   ASSERT_EQ(shares.size(), 1U);
   // Beyond the right side, over cells without data, comes the nearer object: a shadow of it might lie between.
   EXPECT_NEAR(shares[0], side_share(80, 60), 0.02);
-  const std::vector<double> apart =
+  const PoolVector<double> apart =
       shares_at(cut_of({facing({-60, -50, kDepth}, 60, 60), facing({40, 60, 700}, 50, 40)}), kDepth);
   ASSERT_EQ(apart.size(), 1U);
   EXPECT_EQ(apart[0], 0.0);
@@ -131,7 +131,7 @@ TEST(CutShares, the_faces_of_a_box_are_not_cut) {
 }
 
 TEST(CutShares, both_parts_of_a_face_behind_a_bar_are_cut) {
-  const std::vector<double> shares = shares_at(
+  const PoolVector<double> shares = shares_at(
       cut_of({facing({0, 0, kDepth}, 160, 80), upright_bar(-10.0 * 700 / kDepth, 20.0 * 700 / kDepth, 700)}), kDepth);
   ASSERT_EQ(shares.size(), 2U);
   EXPECT_NEAR(shares[0], side_share(80, 70), 0.02);
@@ -167,7 +167,7 @@ TEST(CutShares, a_hole_is_no_cut) {
 TEST(CutShares, a_narrower_rest_is_cut_by_a_larger_share) {
   double last = 0.0;
   for (const double width : {100.0, 70.0, 40.0, 20.0}) {
-    const std::vector<double> shares = shares_at(
+    const PoolVector<double> shares = shares_at(
         cut_of({facing({0, 0, kDepth}, 120, 80), upright_bar((-60.0 + width) * 700.0 / kDepth, 150, 700)}), kDepth);
     ASSERT_EQ(shares.size(), 1U);
     EXPECT_GT(shares[0], last);

@@ -1,16 +1,16 @@
 #include "common/relation_attributes.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <numbers>
-
-#include <gtest/gtest.h>
 
 #include "tests/images.h"
 
 namespace foresight {
 namespace {
 
-std::vector<DescribedRegion> regions_of(const std::vector<test::Rectangle>& rectangles) {
+PoolVector<DescribedRegion> regions_of(const std::vector<test::Rectangle>& rectangles) {
   const SensorModel sensor;
   return extract_regions(test::render(rectangles, sensor.camera), sensor.camera, segmentation_options_for(sensor));
 }
@@ -29,7 +29,8 @@ TEST(RelationAttributes, sides_of_a_box_meet_at_right_angles) {
   const auto regions = regions_of(box(corner_pose({0, 0, 900})));
   ASSERT_EQ(regions.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < i; ++j) EXPECT_NEAR(relate(regions[i], regions[j])[kOrientation], std::numbers::pi / 2, 0.01);
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_NEAR(relate(regions[i], regions[j])[kOrientation], std::numbers::pi / 2, 0.01);
   }
 }
 

@@ -13,7 +13,7 @@
 namespace foresight {
 namespace {
 
-DescribedRegion region_of(std::vector<int> cells) {
+DescribedRegion region_of(PoolVector<int> cells) {
   DescribedRegion described;
   described.region.cells = std::move(cells);
   return described;
@@ -26,7 +26,7 @@ std::vector<CellLabel> labels_of(const std::vector<int>& faces) {
   return labels;
 }
 
-std::vector<std::pair<int, int>> paired(const std::vector<DescribedRegion>& regions, const std::vector<int>& faces,
+std::vector<std::pair<int, int>> paired(const PoolVector<DescribedRegion>& regions, const std::vector<int>& faces,
                                         double smallest_share = 0.5) {
   std::vector<std::pair<int, int>> pairs;
   for (const RegionFace& pair : pair_regions_with_faces(regions, labels_of(faces), smallest_share)) {
@@ -48,7 +48,7 @@ TEST(PairRegionsWithFaces, lets_two_regions_have_one_face) {
 }
 
 TEST(PairRegionsWithFaces, leaves_out_regions_without_a_majority) {
-  const std::vector<DescribedRegion> regions = {region_of({0, 1, 2, 3, 4}), region_of({5, 6})};
+  const PoolVector<DescribedRegion> regions = {region_of({0, 1, 2, 3, 4}), region_of({5, 6})};
   const std::vector<int> faces = {1, 1, 2, 2, 3, 9, 9};
   EXPECT_EQ(paired(regions, faces), (Pairs{{1, 9}}));
   EXPECT_EQ(paired(regions, faces, 0.4), (Pairs{{0, 1}, {1, 9}}));

@@ -116,12 +116,12 @@ TEST(CanonicalPose, of_an_object_without_exact_symmetries_is_the_pose_itself) {
 TEST(MovedFaces, lie_where_the_given_ones_lay) {
   Random random(25);
   const CompiledModel model = bar({12, -5, 30});
-  const std::vector<int> faces = {0, 1, 2, 3, 4, 5};
+  const PoolVector<int> faces = {0, 1, 2, 3, 4, 5};
   for (const Symmetry& symmetry : model.symmetries) {
     if (!symmetry.exact) continue;
     const Pose pose = random_pose(random);
     const Pose other = pose * symmetry.T_model_model;
-    const std::vector<int> moved = moved_faces(model, faces, symmetry.T_model_model);
+    const PoolVector<int> moved = moved_faces(model, faces, symmetry.T_model_model);
     ASSERT_EQ(moved.size(), faces.size());
     for (std::size_t i = 0; i < faces.size(); ++i) {
       const ModelFace& before = model.faces[static_cast<std::size_t>(faces[i])];
@@ -130,21 +130,21 @@ TEST(MovedFaces, lie_where_the_given_ones_lay) {
       EXPECT_LT((pose.rotation * before.normal - other.rotation * after.normal).norm(), 1e-9);
     }
   }
-  EXPECT_EQ(moved_faces(model, {5, 0}, Pose{}), (std::vector<int>{5, 0}));
+  EXPECT_EQ(moved_faces(model, {5, 0}, Pose{}), (PoolVector<int>{5, 0}));
 }
 
 TEST(MovedFaces, tell_a_disc_from_the_ring_around_it) {
   CompiledModel model = bar({0, 0, 0});
   model.faces.push_back(model.faces[0]);  // the same plane and centroid
   model.faces.back().area = 500.0;
-  EXPECT_EQ(moved_faces(model, {0, 6}, Pose{}), (std::vector<int>{0, 6}));
+  EXPECT_EQ(moved_faces(model, {0, 6}, Pose{}), (PoolVector<int>{0, 6}));
 }
 
 TEST(NearSymmetricPoses, are_those_of_the_near_symmetries_alone) {
   Random random(26);
   CompiledModel model = bar({12, -5, 30});
   const Pose pose = random_pose(random);
-  const std::vector<Pose> poses = near_symmetric_poses(model, pose);
+  const PoolVector<Pose> poses = near_symmetric_poses(model, pose);
   ASSERT_EQ(poses.size(), 1U);
   expect_same(poses[0], pose * model.symmetries.back().T_model_model);
   EXPECT_TRUE(near_symmetric_poses(CompiledModel{}, pose).empty());

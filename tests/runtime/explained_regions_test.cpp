@@ -23,9 +23,9 @@ CompiledModel box_model() {
 // A box with three sides in sight; a wall stands far behind it when asked for.
 struct Scan {
   RangeImage image;
-  std::vector<DescribedRegion> regions;
-  std::vector<int> of_box;  // regions
-  std::vector<int> of_wall;
+  PoolVector<DescribedRegion> regions;
+  PoolVector<int> of_box;  // regions
+  PoolVector<int> of_wall;
 
   explicit Scan(const std::vector<Screen>& screens = {}) : image(box_image(box_pose(), PinholeCamera{}, screens)) {
     regions = extract_regions(image, PinholeCamera{}, segmentation_options_for(SensorModel{}));
@@ -33,7 +33,7 @@ struct Scan {
       (regions[i].centroid.z() < 1000.0 ? of_box : of_wall).push_back(static_cast<int>(i));
     }
   }
-  [[nodiscard]] std::vector<int> explained_by(const Pose& pose, const ExplanationOptions& options = {}) const {
+  [[nodiscard]] PoolVector<int> explained_by(const Pose& pose, const ExplanationOptions& options = {}) const {
     return explained_regions(box_model(), pose, image, regions, options);
   }
 };

@@ -376,7 +376,8 @@ TEST(CInterface, structs_are_laid_out_as_in_abi_version_1) {
   EXPECT_EQ(sizeof(foresight_object), 72U);
   EXPECT_EQ(offsetof(foresight_object, name), 8U);
   EXPECT_EQ(offsetof(foresight_object, diameter), 64U);
-  EXPECT_EQ(sizeof(foresight_options), 24U);
+  EXPECT_EQ(sizeof(foresight_options), 32U);
+  EXPECT_EQ(offsetof(foresight_options, reserved_memory), 24U);
   EXPECT_EQ(offsetof(foresight_options, most_verifications), 16U);
   EXPECT_EQ(sizeof(foresight_image), 24U);
   EXPECT_EQ(offsetof(foresight_image, xyz), 16U);
@@ -388,7 +389,8 @@ TEST(CInterface, structs_are_laid_out_as_in_abi_version_1) {
   EXPECT_EQ(offsetof(foresight_detection, alternative_count), 568U);
   EXPECT_EQ(sizeof(foresight_alternative), 152U);
   EXPECT_EQ(offsetof(foresight_alternative, score), 144U);
-  EXPECT_EQ(sizeof(foresight_statistics), 72U);
+  EXPECT_EQ(sizeof(foresight_statistics), 80U);
+  EXPECT_EQ(offsetof(foresight_statistics, pool_bytes), 72U);
   EXPECT_EQ(offsetof(foresight_statistics, pose_checks), 64U);
   EXPECT_EQ(sizeof(foresight_times), 56U);
   EXPECT_EQ(offsetof(foresight_times, total), 48U);

@@ -30,12 +30,12 @@ HypothesisField random_field(Random& random, int matches, int regions, double su
       field.supports[b].push_back(static_cast<int>(a));
     }
   }
-  for (std::vector<int>& list : field.supports) std::sort(list.begin(), list.end());
+  for (PoolVector<int>& list : field.supports) std::sort(list.begin(), list.end());
   return field;
 }
 
 // A field without any pair.
-HypothesisField independent_field(const std::vector<std::array<double, 2>>& unary) {
+HypothesisField independent_field(const PoolVector<std::array<double, 2>>& unary) {
   HypothesisField field;
   for (std::size_t i = 0; i < unary.size(); ++i) {
     Match match;
@@ -50,7 +50,7 @@ HypothesisField independent_field(const std::vector<std::array<double, 2>>& unar
 
 double least_energy(const HypothesisField& field) {
   const std::size_t count = field.matches.size();
-  std::vector<Label> labels(count);
+  PoolVector<Label> labels(count);
   double least = INFINITY;
   for (std::size_t bits = 0; bits < (std::size_t{1} << count); ++bits) {
     for (std::size_t i = 0; i < count; ++i) labels[i] = (bits >> i & 1U) != 0 ? kOn : kOff;
@@ -59,7 +59,7 @@ double least_energy(const HypothesisField& field) {
   return least;
 }
 
-void expect_no_flip_lowers_energy(const HypothesisField& field, std::vector<Label> labels) {
+void expect_no_flip_lowers_energy(const HypothesisField& field, PoolVector<Label> labels) {
   const double reached = energy(field, labels);
   for (Label& label : labels) {
     const Label kept = label;
@@ -74,10 +74,10 @@ class SlowHcf {
  public:
   explicit SlowHcf(const HypothesisField& field) : field_(field), labels_(field.matches.size(), -1) {}
 
-  std::vector<Label> labels() {
+  PoolVector<Label> labels() {
     while (step()) {
     }
-    std::vector<Label> result;
+    PoolVector<Label> result;
     for (const int label : labels_) result.push_back(label == 1 ? kOn : kOff);
     return result;
   }
@@ -125,24 +125,24 @@ TEST(HighestConfidenceFirst, of_an_empty_field_is_empty) { EXPECT_TRUE(highest_c
 
 TEST(HighestConfidenceFirst, takes_the_better_label_of_independent_matches_and_off_on_a_tie) {
   const auto field = independent_field({{1.0, 2.0}, {2.0, 1.0}, {3.0, 3.0}, {-5.0, 7.0}, {-1.0, -1.5}});
-  EXPECT_EQ(highest_confidence_first(field), (std::vector<Label>{kOff, kOn, kOff, kOff, kOn}));
+  EXPECT_EQ(highest_confidence_first(field), (PoolVector<Label>{kOff, kOn, kOff, kOff, kOn}));
 }
 
 TEST(HighestConfidenceFirst, commits_matches_without_any_confidence) {
   // All energies zero at first: the first match falls to OFF, and OFF costs its supporting neighbour 40.
   HypothesisField field = independent_field({{0.0, 0.0}, {0.0, 0.0}});
   field.supports = {{1}, {0}};
-  EXPECT_EQ(highest_confidence_first(field), (std::vector<Label>{kOn, kOn}));
+  EXPECT_EQ(highest_confidence_first(field), (PoolVector<Label>{kOn, kOn}));
   // A neighbour of zero weight decides nothing: every match must still get its label.
   field.potentials = {0.0, 0.0, 0.0, 0.0, PriorSign::minus_log};
-  EXPECT_EQ(highest_confidence_first(field), (std::vector<Label>{kOff, kOff}));
+  EXPECT_EQ(highest_confidence_first(field), (PoolVector<Label>{kOff, kOff}));
 }
 
 TEST(HighestConfidenceFirst, commits_the_undecided_even_behind_a_decided_match_without_confidence) {
   // Match 0 stays at zero stability once decided. Were it taken for the end, 1 and 2 would never turn each other ON.
   HypothesisField field = independent_field({{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}});
   field.supports = {{}, {2}, {1}};
-  EXPECT_EQ(highest_confidence_first(field), (std::vector<Label>{kOff, kOn, kOn}));
+  EXPECT_EQ(highest_confidence_first(field), (PoolVector<Label>{kOff, kOn, kOn}));
 }
 
 TEST(HighestConfidenceFirst, lets_mutual_support_win_over_a_lone_contradiction) {
@@ -157,7 +157,7 @@ TEST(HighestConfidenceFirst, lets_mutual_support_win_over_a_lone_contradiction) 
   }
   field.by_region = {{0, 1}, {2, 3}, {4, 5}};
   field.supports = {{2, 4}, {}, {0, 4}, {}, {0, 2}, {}};
-  EXPECT_EQ(highest_confidence_first(field), (std::vector<Label>{kOn, kOff, kOn, kOff, kOn, kOff}));
+  EXPECT_EQ(highest_confidence_first(field), (PoolVector<Label>{kOn, kOff, kOn, kOff, kOn, kOff}));
 }
 
 TEST(HighestConfidenceFirst, is_a_local_minimum) {

@@ -59,24 +59,24 @@ HypothesisField random_field(Random& random, const Database& database, int regio
       field.supports[b].push_back(static_cast<int>(a));
     }
   }
-  for (std::vector<int>& list : field.supports) std::sort(list.begin(), list.end());
+  for (PoolVector<int>& list : field.supports) std::sort(list.begin(), list.end());
   return field;
 }
 
-std::vector<Label> random_labels(Random& random, const HypothesisField& field) {
-  std::vector<Label> labels(field.matches.size());
+PoolVector<Label> random_labels(Random& random, const HypothesisField& field) {
+  PoolVector<Label> labels(field.matches.size());
   for (Label& label : labels) label = random.uniform() < 0.7 ? kOn : kOff;
   return labels;
 }
 
-std::set<std::vector<int>> cliques_by_definition(const HypothesisField& field, const std::vector<Label>& labels) {
+std::set<PoolVector<int>> cliques_by_definition(const HypothesisField& field, const PoolVector<Label>& labels) {
   const int count = static_cast<int>(field.matches.size());
   const auto linked = [&](int a, int b) {
     const auto& list = field.supports[static_cast<std::size_t>(a)];
     return labels[static_cast<std::size_t>(a)] == kOn && labels[static_cast<std::size_t>(b)] == kOn &&
            std::find(list.begin(), list.end(), b) != list.end();
   };
-  std::set<std::vector<int>> cliques;
+  std::set<PoolVector<int>> cliques;
   for (int a = 0; a < count; ++a) {
     for (int b = a + 1; b < count; ++b) {
       if (!linked(a, b)) continue;
@@ -84,7 +84,7 @@ std::set<std::vector<int>> cliques_by_definition(const HypothesisField& field, c
       for (int c = 0; c < count; ++c) {
         if (!linked(a, c) || !linked(b, c)) continue;
         contained = true;
-        std::vector<int> clique = {a, b, c};
+        PoolVector<int> clique = {a, b, c};
         std::sort(clique.begin(), clique.end());
         cliques.insert(clique);
       }
@@ -103,7 +103,7 @@ TEST(HypothesisCliques, are_exactly_those_of_the_definition_each_once) {
     const auto field = random_field(random, database, 6, random.uniform(0.05, 0.4));
     const auto labels = random_labels(random, field);
     const auto hypotheses = hypothesis_cliques(field, database, labels);
-    std::set<std::vector<int>> found;
+    std::set<PoolVector<int>> found;
     for (const ObjectHypothesis& hypothesis : hypotheses) {
       found.insert(hypothesis.matches);
       ++(hypothesis.matches.size() == 2 ? pairs : triples);
@@ -119,7 +119,7 @@ TEST(HypothesisCliques, come_least_energy_first_then_by_matches) {
   Random random(2);
   const Database database = database_of(2, 5);
   const auto field = random_field(random, database, 6, 0.3);
-  const auto hypotheses = hypothesis_cliques(field, database, std::vector<Label>(field.matches.size(), kOn));
+  const auto hypotheses = hypothesis_cliques(field, database, PoolVector<Label>(field.matches.size(), kOn));
   int ties = 0;
   for (std::size_t i = 1; i < hypotheses.size(); ++i) {
     const ObjectHypothesis& left = hypotheses[i - 1];
@@ -152,7 +152,7 @@ TEST(HypothesisCliques, carry_their_model_and_their_share_of_the_energy) {
       const auto face = static_cast<std::size_t>(field.matches[match].face);
       EXPECT_EQ(database.faces()[face].model, hypothesis.model);
     }
-    const std::vector<Label> on(static_cast<std::size_t>(size), kOn);
+    const PoolVector<Label> on(static_cast<std::size_t>(size), kOn);
     EXPECT_DOUBLE_EQ(hypothesis.energy, energy(alone, on));
   }
 }
@@ -172,13 +172,13 @@ TEST(HypothesisCliques, of_four_mutually_supporting_matches_are_four_triples) {
       if (j != i) field.supports.back().push_back(j);
     }
   }
-  const auto hypotheses = hypothesis_cliques(field, database, std::vector<Label>(4, kOn));
+  const auto hypotheses = hypothesis_cliques(field, database, PoolVector<Label>(4, kOn));
   ASSERT_EQ(hypotheses.size(), 4U);
-  EXPECT_EQ(hypotheses.front().matches, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(hypotheses.front().matches, (PoolVector<int>{0, 1, 2}));
   EXPECT_EQ(hypotheses.front().energy, 3.0 - 180.0);
   const auto without_last = hypothesis_cliques(field, database, {kOn, kOn, kOff, kOff});
   ASSERT_EQ(without_last.size(), 1U);
-  EXPECT_EQ(without_last.front().matches, (std::vector<int>{0, 1}));
+  EXPECT_EQ(without_last.front().matches, (PoolVector<int>{0, 1}));
 }
 
 TEST(HypothesisCliques, are_none_without_two_active_matches) {
@@ -186,7 +186,7 @@ TEST(HypothesisCliques, are_none_without_two_active_matches) {
   const Database database = database_of(1, 4);
   EXPECT_TRUE(hypothesis_cliques({}, database, {}).empty());
   const auto field = random_field(random, database, 3, 1.0);
-  std::vector<Label> labels(field.matches.size(), kOff);
+  PoolVector<Label> labels(field.matches.size(), kOff);
   EXPECT_TRUE(hypothesis_cliques(field, database, labels).empty());
   labels.front() = kOn;
   EXPECT_TRUE(hypothesis_cliques(field, database, labels).empty());

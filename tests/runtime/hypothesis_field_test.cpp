@@ -55,8 +55,8 @@ Database random_database(Random& random, int models, int faces) {
   return Database(std::move(content));
 }
 
-std::vector<DescribedRegion> random_regions(Random& random, int count) {
-  std::vector<DescribedRegion> regions(static_cast<std::size_t>(count));
+PoolVector<DescribedRegion> random_regions(Random& random, int count) {
+  PoolVector<DescribedRegion> regions(static_cast<std::size_t>(count));
   for (DescribedRegion& region : regions) {
     for (double& value : region.attributes) value = random.uniform(0.0, kLargest);
     region.region.normal = random.direction();
@@ -68,7 +68,7 @@ std::vector<DescribedRegion> random_regions(Random& random, int count) {
 
 struct Example {
   Database database;
-  std::vector<DescribedRegion> regions;
+  PoolVector<DescribedRegion> regions;
   HypothesisField field;
 };
 
@@ -103,7 +103,7 @@ TEST(HypothesisField, supports_are_exactly_the_pairs_of_equation_2_ascending_and
     const Example example = random_example(seed);
     const auto& matches = example.field.matches;
     for (std::size_t a = 0; a < matches.size(); ++a) {
-      std::vector<int> expected;
+      PoolVector<int> expected;
       for (std::size_t b = 0; b < matches.size(); ++b) {
         if (expected_support(example, matches[a], matches[b])) expected.push_back(static_cast<int>(b));
       }
@@ -163,7 +163,7 @@ TEST(HypothesisField, is_empty_without_regions) {
 }
 
 // The potential of one pair as the paper prints the table.
-double pair_energy(const HypothesisField& field, std::size_t a, std::size_t b, const std::vector<Label>& labels) {
+double pair_energy(const HypothesisField& field, std::size_t a, std::size_t b, const PoolVector<Label>& labels) {
   const Potentials& v = field.potentials;
   const bool on_a = labels[a] == kOn;
   const bool on_b = labels[b] == kOn;
@@ -180,7 +180,7 @@ TEST(Energy, sums_every_unary_and_every_unordered_pair_once) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Example example = random_example(seed);
     const std::size_t count = example.field.matches.size();
-    std::vector<Label> labels(count);
+    PoolVector<Label> labels(count);
     for (Label& label : labels) label = random.uniform() < 0.5 ? kOn : kOff;
     double expected = 0.0;
     for (std::size_t a = 0; a < count; ++a) {

@@ -44,19 +44,19 @@ Key key_of(const MatchPair& pair) { return {pair.a.region, pair.b.region, pair.a
 // Holds what a queue refers to.
 struct Queue {
   const MatchRater rater;
-  std::vector<RegionMatches> matches;
+  PoolVector<RegionMatches> matches;
   RegionRelations relations;
   HypothesisQueue queue;
 
-  Queue(const Database& objects, const std::vector<DescribedRegion>& regions, double least_rating = -1e9,
+  Queue(const Database& objects, const PoolVector<DescribedRegion>& regions, double least_rating = -1e9,
         const RatingOptions& options = {})
       : rater(objects, options),
         matches(rater.rate(regions)),
         relations(regions),
         queue(matches, regions, objects, rater, relations, least_rating) {}
 
-  std::vector<MatchPair> all(const std::function<bool(int)>& is_free = [](int) { return true; }) {
-    std::vector<MatchPair> pairs;
+  PoolVector<MatchPair> all(const std::function<bool(int)>& is_free = [](int) { return true; }) {
+    PoolVector<MatchPair> pairs;
     while (const auto pair = queue.next(is_free)) pairs.push_back(*pair);
     return pairs;
   }
@@ -81,7 +81,7 @@ TEST(RegionRelations, are_those_of_the_regions_in_either_order) {
 
 TEST(HypothesisQueue, gives_pairs_in_descending_order_of_rating) {
   Queue queue(database(), scene().regions);
-  const std::vector<MatchPair> pairs = queue.all();
+  const PoolVector<MatchPair> pairs = queue.all();
   ASSERT_GT(pairs.size(), 100U);
   for (std::size_t i = 1; i < pairs.size(); ++i) EXPECT_LE(pairs[i].rating, pairs[i - 1].rating);
 }
@@ -120,13 +120,13 @@ TEST(HypothesisQueue, gives_each_pair_that_one_object_may_explain_once) {
 
 TEST(HypothesisQueue, ends_where_the_ratings_asked_for_end) {
   Queue every(database(), scene().regions);
-  const std::vector<MatchPair> pairs = every.all();
+  const PoolVector<MatchPair> pairs = every.all();
   const auto above = [&](double least) {
     return static_cast<std::size_t>(
         std::count_if(pairs.begin(), pairs.end(), [&](const MatchPair& pair) { return pair.rating >= least; }));
   };
   for (const double least : {-2.0, 0.0, 4.0, 8.0, 1e3}) {
-    const std::vector<MatchPair> best = Queue(database(), scene().regions, least).all();
+    const PoolVector<MatchPair> best = Queue(database(), scene().regions, least).all();
     EXPECT_EQ(best.size(), above(least)) << least;
     for (const MatchPair& pair : best) EXPECT_GE(pair.rating, least);
   }
@@ -136,8 +136,8 @@ TEST(HypothesisQueue, ends_where_the_ratings_asked_for_end) {
 TEST(HypothesisQueue, keeps_one_order) {
   Queue first(database(), scene().regions);
   Queue second(database(), scene().regions);
-  const std::vector<MatchPair> a = first.all();
-  const std::vector<MatchPair> b = second.all();
+  const PoolVector<MatchPair> a = first.all();
+  const PoolVector<MatchPair> b = second.all();
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_EQ(key_of(a[i]), key_of(b[i]));
@@ -147,11 +147,11 @@ TEST(HypothesisQueue, keeps_one_order) {
 
 TEST(HypothesisQueue, leaves_out_regions_that_are_not_free) {
   Queue queue(database(), scene().regions);
-  const std::vector<MatchPair> pairs = queue.all();
+  const PoolVector<MatchPair> pairs = queue.all();
   const int taken = pairs.front().a.region;
   const auto has_taken = [taken](const MatchPair& pair) { return pair.a.region == taken || pair.b.region == taken; };
   Queue without(database(), scene().regions);
-  const std::vector<MatchPair> left = without.all([taken](int region) { return region != taken; });
+  const PoolVector<MatchPair> left = without.all([taken](int region) { return region != taken; });
   EXPECT_TRUE(std::none_of(left.begin(), left.end(), has_taken));
   EXPECT_EQ(static_cast<std::ptrdiff_t>(left.size()),
             static_cast<std::ptrdiff_t>(pairs.size()) - std::count_if(pairs.begin(), pairs.end(), has_taken));
@@ -159,7 +159,7 @@ TEST(HypothesisQueue, leaves_out_regions_that_are_not_free) {
 
 TEST(HypothesisQueue, gives_the_pairs_of_two_regions_at_any_time) {
   Queue queue(database(), scene().regions, 1.0);
-  const std::vector<MatchPair> pairs = queue.all();
+  const PoolVector<MatchPair> pairs = queue.all();
   const int a = pairs.front().a.region;
   const int b = pairs.front().b.region;
   std::vector<Key> expected;
@@ -168,11 +168,11 @@ TEST(HypothesisQueue, gives_the_pairs_of_two_regions_at_any_time) {
   }
   ASSERT_GE(expected.size(), 4U);
   for (const auto& [first, second] : {std::pair(a, b), std::pair(b, a)}) {
-    const std::vector<MatchPair> found = queue.queue.pairs_of(first, second, 1000);
+    const PoolVector<MatchPair> found = queue.queue.pairs_of(first, second, 1000);
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(key_of(found[i]), expected[i]);
   }
-  const std::vector<MatchPair> best = queue.queue.pairs_of(a, b, 3);
+  const PoolVector<MatchPair> best = queue.queue.pairs_of(a, b, 3);
   ASSERT_EQ(best.size(), 3U);
   EXPECT_EQ(key_of(best[2]), expected[2]);
   EXPECT_TRUE(queue.queue.pairs_of(a, b, 0).empty());
@@ -203,7 +203,7 @@ TEST(HypothesisQueue, is_empty_without_two_matched_regions) {
   EXPECT_TRUE(Queue(database(), {}).all().empty());
   EXPECT_TRUE(Queue(database(), {scene().regions[0]}).all().empty());
   // Regions that no face is like.
-  std::vector<DescribedRegion> unknown(3, scene().regions[0]);
+  PoolVector<DescribedRegion> unknown(3, scene().regions[0]);
   for (DescribedRegion& region : unknown) {
     region.attributes.fill(1e6);
     region.cut_share = 0.0;

@@ -237,7 +237,7 @@ inline const CompiledModel& learned_box() {
 struct SeenScan {
   SensorModel sensor;
   RangeImage image;
-  std::vector<DescribedRegion> regions;
+  PoolVector<DescribedRegion> regions;
 
   explicit SeenScan(RangeImage seen) : image(std::move(seen)), regions(extract_regions(image, sensor.camera, {})) {}
   SeenScan(const SeenScan&) = delete;

@@ -79,7 +79,7 @@ TEST(VisiblePoints, are_those_of_the_faces_turned_to_the_camera) {
   for (int trial = 0; trial < 50; ++trial) {
     const Pose pose =
         moved(box_pose(), 100.0 * random.direction(), rotation_angle(random.rotation()) * random.direction());
-    const std::vector<int> visible = visible_points(model, sphere(), pose);
+    const PoolVector<int> visible = visible_points(model, sphere(), pose);
     EXPECT_TRUE(std::is_sorted(visible.begin(), visible.end()));
     const Eigen::Vector3d to_camera = (-(pose * kBoxCentre)).normalized();
     for (std::size_t i = 0; i < model.surface.points.size(); ++i) {
@@ -116,7 +116,7 @@ TEST(LocalizationEnergy, sums_rho_over_distances_to_the_nearest_data_points) {
     LocalizationOptions options;
     options.loss = loss;
     options.sigma = 20.0;
-    const std::vector<int> visible = {0, 17, 100};
+    const PoolVector<int> visible = {0, 17, 100};
     double expected = 0.0;
     for (const int i : visible) {
       const Eigen::Vector3d x = box_pose() * model.surface.points[static_cast<std::size_t>(i)].position.cast<double>();
@@ -129,7 +129,7 @@ TEST(LocalizationEnergy, sums_rho_over_distances_to_the_nearest_data_points) {
 TEST(LocalizationEnergy, is_least_near_the_true_pose) {
   const CompiledModel model = box_model();
   const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));
-  const std::vector<int> visible = visible_points(model, sphere(), box_pose());
+  const PoolVector<int> visible = visible_points(model, sphere(), box_pose());
   const double at_truth = localization_energy(model, visible, box_pose(), data, {});
   for (int i = 0; i < kStarts; ++i) {
     EXPECT_GT(localization_energy(model, visible, start_near(box_pose(), i, 3.0, 3.0), data, {}), at_truth);
@@ -144,7 +144,7 @@ TEST(EnergyGradient, agrees_with_finite_differences) {
     options.loss = loss;
     for (int i = 0; i < 5; ++i) {
       const Pose pose = start_near(box_pose(), i, 6.0, 6.0);
-      const std::vector<int> visible = visible_points(model, sphere(), pose);
+      const PoolVector<int> visible = visible_points(model, sphere(), pose);
       const auto energy = [&](const Eigen::Vector3d& translation, const Eigen::Vector3d& v) {
         return localization_energy(model, visible, moved(pose, translation, v), data, options);
       };
@@ -198,7 +198,7 @@ TEST(Localization, reports_the_energy_of_its_pose) {
     options.most_rounds = rounds;
     for (int i = 0; i < 10; ++i) {
       const Localization found = localize(model, sphere(), start_near(box_pose(), i, 15.0, 15.0), data, options);
-      const std::vector<int> visible = visible_points(model, sphere(), found.T_sensor_model);
+      const PoolVector<int> visible = visible_points(model, sphere(), found.T_sensor_model);
       EXPECT_EQ(found.energy, localization_energy(model, visible, found.T_sensor_model, data, options));
     }
   }
@@ -347,7 +347,7 @@ TEST(LocalizationReach, an_evaluation_near_by_changes_no_energy) {
   const LocalizationOptions options = reaching(6.0);
   for (int i = 0; i < 5; ++i) {
     Pose pose = start_near(box_pose(), i, 15.0, 10.0);
-    const std::vector<int> visible = visible_points(model, sphere(), pose);
+    const PoolVector<int> visible = visible_points(model, sphere(), pose);
     EnergyEvaluation before = evaluate_energy(model, visible, pose, data, options);
     int nowhere = 0;
     for (int step = 0; step < 12; ++step) {
@@ -385,7 +385,7 @@ TEST(LocalizationReach, points_without_data_near_count_as_at_the_reach) {
   const CompiledModel model = box_model();
   const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));
   const Pose pose = start_near(box_pose(), 1, 12.0, 10.0);
-  const std::vector<int> visible = visible_points(model, sphere(), pose);
+  const PoolVector<int> visible = visible_points(model, sphere(), pose);
   const EnergyEvaluation all = evaluate_energy(model, visible, pose, data, {});
   const LocalizationOptions options = reaching(5.0);
   const EnergyEvaluation near = evaluate_energy(model, visible, pose, data, options);
@@ -409,7 +409,7 @@ TEST(LocalizationReach, points_without_data_near_pull_nowhere) {
   const CompiledModel model = box_model();
   const NearestDataPoint data(box_image(box_pose(), PinholeCamera{}));
   const Pose far = moved(box_pose(), {0, 0, 100}, {0, 0, 0});
-  const std::vector<int> visible = visible_points(model, sphere(), far);
+  const PoolVector<int> visible = visible_points(model, sphere(), far);
   const LocalizationOptions options = reaching(20.0);
   const EnergyGradient gradient =
       energy_gradient(evaluate_energy(model, visible, far, data, options), far * kBoxCentre, options);

@@ -64,8 +64,8 @@ Database random_database(Random& random, int count) {
   return database_of(std::move(faces));
 }
 
-std::vector<DescribedRegion> random_regions(Random& random, int count) {
-  std::vector<DescribedRegion> regions(static_cast<std::size_t>(count));
+PoolVector<DescribedRegion> random_regions(Random& random, int count) {
+  PoolVector<DescribedRegion> regions(static_cast<std::size_t>(count));
   for (DescribedRegion& region : regions) {
     for (double& value : region.attributes) value = random.uniform(0.0, kBins);
   }

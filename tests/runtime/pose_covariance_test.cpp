@@ -28,7 +28,7 @@ PosePrior prior_at(const Vector3d& about) {
 }
 
 // A square of n x n points of one plane, 40 mm wide.
-void add_plane(std::vector<PoseConstraint>& constraints, const Vector3d& centre, const Vector3d& normal, int group,
+void add_plane(PoolVector<PoseConstraint>& constraints, const Vector3d& centre, const Vector3d& normal, int group,
                int n = 10, double shared = 0.0) {
   const Vector3d u = normal.unitOrthogonal();
   const Vector3d v = normal.cross(u);
@@ -46,29 +46,29 @@ void add_plane(std::vector<PoseConstraint>& constraints, const Vector3d& centre,
 const Vector3d kCorner(30.0, -20.0, 900.0);
 
 // Three planes that fix all of a pose.
-std::vector<PoseConstraint> corner(double shared = 0.0) {
-  std::vector<PoseConstraint> constraints;
+PoolVector<PoseConstraint> corner(double shared = 0.0) {
+  PoolVector<PoseConstraint> constraints;
   add_plane(constraints, kCorner + 20.0 * Vector3d(1, 0.1, 0), Vector3d(0.9, 0.1, -0.4).normalized(), 0, 10, shared);
   add_plane(constraints, kCorner + 20.0 * Vector3d(0, 1, 0.2), Vector3d(-0.2, 0.8, -0.5).normalized(), 1, 12, shared);
   add_plane(constraints, kCorner + 20.0 * Vector3d(0, 0, -1), Vector3d(-0.3, -0.4, -0.8).normalized(), 2, 8, shared);
   return constraints;
 }
 
-std::vector<PoseConstraint> one_plane(double shared = 0.0) {
-  std::vector<PoseConstraint> constraints;
+PoolVector<PoseConstraint> one_plane(double shared = 0.0) {
+  PoolVector<PoseConstraint> constraints;
   add_plane(constraints, kCorner, -Vector3d::UnitZ(), 0, 10, shared);
   return constraints;
 }
 
 // What a small error of the pose about a place makes of the offsets.
-void displace(std::vector<PoseConstraint>& constraints, const Vector6& error, const Vector3d& about) {
+void displace(PoolVector<PoseConstraint>& constraints, const Vector6& error, const Vector3d& about) {
   for (PoseConstraint& c : constraints) {
     const Vector3d moved = error.head<3>() + error.tail<3>().cross(c.point - about);
     c.offset += c.direction.dot(moved);
   }
 }
 
-void add_noise(std::vector<PoseConstraint>& constraints, double factor, Random& random) {
+void add_noise(PoolVector<PoseConstraint>& constraints, double factor, Random& random) {
   for (PoseConstraint& c : constraints) c.offset += factor * c.sigma * random.gaussian();
 }
 
@@ -86,7 +86,7 @@ TEST(PoseCovariance, is_symmetric_and_positive_definite_whatever_the_data_say) {
   Random random(3);
   const Vector3d origin(-200.0, 90.0, 1500.0);  // CAD origins may be far from the object
   for (const double shared : {0.0, 0.03}) {
-    for (std::vector<PoseConstraint> constraints : {corner(shared), one_plane(shared), std::vector<PoseConstraint>{}}) {
+    for (PoolVector<PoseConstraint> constraints : {corner(shared), one_plane(shared), PoolVector<PoseConstraint>{}}) {
       expect_symmetric_positive_definite(covariance_of(constraints, prior_at(kCorner), kCorner));
       add_noise(constraints, 3.0, random);
       expect_symmetric_positive_definite(covariance_of(constraints, prior_at(kCorner), origin));
@@ -98,7 +98,7 @@ TEST(PoseCovariance, turns_with_the_scene_and_does_not_depend_on_its_place) {
   Random random(4);
   const Eigen::Matrix3d turn = rotation_from_vector({0.4, -1.1, 0.7});
   const Vector3d shift(50.0, -300.0, 120.0);
-  std::vector<PoseConstraint> constraints = corner(0.02);
+  PoolVector<PoseConstraint> constraints = corner(0.02);
   add_noise(constraints, 1.0, random);
   const Vector3d origin = kCorner + Vector3d(11.0, -40.0, 25.0);
   const PoseCovariance before = covariance_of(constraints, prior_at(kCorner), origin);
@@ -113,8 +113,8 @@ TEST(PoseCovariance, turns_with_the_scene_and_does_not_depend_on_its_place) {
 }
 
 TEST(PoseCovariance, halves_deviations_with_four_times_the_data) {
-  const std::vector<PoseConstraint> once = corner();
-  std::vector<PoseConstraint> four_times;
+  const PoolVector<PoseConstraint> once = corner();
+  PoolVector<PoseConstraint> four_times;
   for (int i = 0; i < 4; ++i) four_times.insert(four_times.end(), once.begin(), once.end());
   const PoseCovariance a = covariance_of(once, prior_at(kCorner), kCorner);
   const PoseCovariance b = covariance_of(four_times, prior_at(kCorner), kCorner);
@@ -143,7 +143,7 @@ TEST(PoseCovariance, leaves_to_the_prior_what_a_single_plane_does_not_decide) {
 TEST(PoseCovariance, counts_the_step_that_the_pose_falls_short_of) {
   Vector6 error;
   error << 0.3, -0.2, 0.25, 0.004, -0.006, 0.005;
-  std::vector<PoseConstraint> constraints = corner();
+  PoolVector<PoseConstraint> constraints = corner();
   const PoseCovariance there = covariance_of(constraints, prior_at(kCorner), kCorner);
   displace(constraints, error, kCorner);
   const PoseCovariance off = covariance_of(constraints, prior_at(kCorner), kCorner);
@@ -154,8 +154,8 @@ TEST(PoseCovariance, counts_the_step_that_the_pose_falls_short_of) {
 
 TEST(PoseCovariance, grows_with_data_that_scatter_more_than_the_sensors_noise) {
   Random random(5);
-  std::vector<PoseConstraint> noisy = corner();
-  std::vector<PoseConstraint> exact = corner();
+  PoolVector<PoseConstraint> noisy = corner();
+  PoolVector<PoseConstraint> exact = corner();
   add_noise(noisy, 3.0, random);
   const PoseCovariance a = covariance_of(exact, prior_at(kCorner), kCorner);
   const PoseCovariance b = covariance_of(noisy, prior_at(kCorner), kCorner);

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 struct Seen {
   SensorModel sensor;
   RangeImage image;
-  std::vector<DescribedRegion> regions;
+  PoolVector<DescribedRegion> regions;
 
   explicit Seen(RangeImage seen) : image(std::move(seen)), regions(extract_regions(image, sensor.camera, {})) {}
 
@@ -317,7 +317,7 @@ TEST(PoseEvidence, is_nothing_outside_the_image) {
   for (const Vector3d& move : {Vector3d(5000, 0, 0), Vector3d(0, 0, -2000)}) {
     const PoseEvidence e = box_evidence(seen, test::moved(test::box_pose(), move, {0, 0, 0}));
     EXPECT_EQ(e.drawn, 0);
-    EXPECT_EQ(e.explained_of_region, std::vector<int>(3, 0));
+    EXPECT_EQ(e.explained_of_region, PoolVector<int>(3, 0));
     for (std::size_t k = 0; k < kEvidenceFeatureCount; ++k) {
       if (k != kOtherSurfaces) {
         EXPECT_EQ(evidence_features(e)[k], 0.0);

@@ -53,18 +53,18 @@ std::vector<ModelFace> random_box(Random& random) {
   return faces;
 }
 
-std::vector<DescribedRegion> regions_of(const std::vector<ModelFace>& faces, const Pose& pose) {
-  std::vector<DescribedRegion> regions;
+PoolVector<DescribedRegion> regions_of(const std::vector<ModelFace>& faces, const Pose& pose) {
+  PoolVector<DescribedRegion> regions;
   for (const ModelFace& face : faces) regions.push_back(region_of(face, pose));
   return regions;
 }
 
-std::optional<Pose> estimate(const std::vector<DescribedRegion>& regions, const std::vector<ModelFace>& faces,
+std::optional<Pose> estimate(const PoolVector<DescribedRegion>& regions, const std::vector<ModelFace>& faces,
                              std::vector<std::size_t> order = {}) {
   if (order.empty()) {
     for (std::size_t i = 0; i < faces.size(); ++i) order.push_back(i);
   }
-  std::vector<RegionFaceMatch> matches;
+  PoolVector<RegionFaceMatch> matches;
   for (const std::size_t i : order) matches.push_back({&regions[i], &faces[i]});
   return pose_from_matches(matches);
 }

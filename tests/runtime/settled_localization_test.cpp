@@ -28,13 +28,15 @@ const CompiledModel& box() { return database().models()[0]; }
 struct Scene {
   SeenScan seen;
   PinholeCamera camera;
+  NearestDataCell data;
   ScanContext context;
   LabelledScan labelled;
   PoseChecker settling;
 
   explicit Scene(const RangeImage& image)
       : seen(image),
-        context{seen.image, camera, database(), seen.regions, std::make_unique<NearestDataCell>(seen.image, camera)},
+        data(seen.image, camera),
+        context{seen.image, camera, database(), seen.regions, data},
         labelled(seen.labelled()),
         settling(database(), labelled, settling_options(seen.sensor)) {}
   Scene(const Scene&) = delete;
@@ -45,7 +47,7 @@ struct Scene {
   }
   [[nodiscard]] Localization plain(const Pose& start) const {
     const LocalizationOptions options = near_localization_options({});
-    return localize(box(), context.sphere, start, *context.data, options);
+    return localize(box(), context.sphere, start, context.data, options);
   }
   // How much the scan agrees, less how much it disagrees.
   [[nodiscard]] double balance(const Pose& pose) const {

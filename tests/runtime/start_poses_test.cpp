@@ -24,7 +24,7 @@ const FaceShapes& shapes() {
   return known;
 }
 
-void expect_contains(const PatchFrame& frame, const std::vector<Vector3d>& points, double tolerance) {
+void expect_contains(const PatchFrame& frame, const PoolVector<Vector3d>& points, double tolerance) {
   const Vector3d across = frame.normal.cross(frame.axis);
   for (const Vector3d& point : points) {
     EXPECT_LE(std::abs(frame.axis.dot(point - frame.centre)), 0.5 * frame.extents[0] + tolerance);
@@ -43,7 +43,7 @@ void expect_orthonormal(const PatchFrame& frame) {
 // Points of the x-y plane, taken somewhere into space.
 struct Placed {
   Pose pose;
-  std::vector<Vector3d> points;
+  PoolVector<Vector3d> points;
 
   Placed(Random& random, const std::vector<Eigen::Vector2d>& flat) {
     pose = {random.rotation(), 500.0 * random.direction()};
@@ -148,7 +148,7 @@ TEST(FaceShapes, know_the_corners_and_the_rectangle_of_each_face) {
 double turn_between(const Pose& a, const Pose& b) { return rotation_angle(a.rotation.transpose() * b.rotation); }
 
 // How far the nearest of the starts is from a pose: in mm, with a millimetre for each degree.
-double nearest_start(const std::vector<Pose>& starts, const Pose& truth) {
+double nearest_start(const PoolVector<Pose>& starts, const Pose& truth) {
   double nearest = 1e9;
   for (const Pose& start : starts) {
     EXPECT_TRUE(is_rotation(start.rotation, 1e-6));
@@ -168,8 +168,8 @@ Pose corner_view(Random& random) {
   return pose;
 }
 
-std::vector<RatedMatch> true_matches(const SeenScan& seen, const Pose& pose) {
-  std::vector<RatedMatch> matches;
+PoolVector<RatedMatch> true_matches(const SeenScan& seen, const Pose& pose) {
+  PoolVector<RatedMatch> matches;
   for (std::size_t r = 0; r < seen.regions.size(); ++r) {
     const auto face = test::face_shown(learned_block(), pose, seen.regions[r]);
     if (face && seen.regions[r].region.cells.size() > 150) matches.push_back({static_cast<int>(r), 0, *face, 0.0});
@@ -184,7 +184,7 @@ TEST(PairStarts, hold_the_true_pose_for_whole_faces) {
     const Pose truth = corner_view(random);
     const SeenScan seen(test::image_of({{&learned_block(), truth}}));
     const ScanRegions scan = frame_regions(seen.regions);
-    const std::vector<RatedMatch> matches = true_matches(seen, truth);
+    const PoolVector<RatedMatch> matches = true_matches(seen, truth);
     for (std::size_t i = 0; i < matches.size(); ++i) {
       for (std::size_t j = i + 1; j < matches.size(); ++j) {
         EXPECT_LT(nearest_start(pair_starts(database(), shapes(), scan, {matches[i], matches[j], 0.0}), truth), 4.0);
@@ -217,10 +217,10 @@ TEST(PairStarts, hold_the_true_pose_for_faces_cut_at_one_end) {
     const Pose truth = corner_view(random);
     const SeenScan seen(half_hidden(truth, view % 2 == 0));
     const ScanRegions scan = frame_regions(seen.regions);
-    const std::vector<RatedMatch> matches = true_matches(seen, truth);
+    const PoolVector<RatedMatch> matches = true_matches(seen, truth);
     for (std::size_t i = 0; i < matches.size(); ++i) {
       for (std::size_t j = i + 1; j < matches.size(); ++j) {
-        const std::vector<Pose> starts = pair_starts(database(), shapes(), scan, {matches[i], matches[j], 0.0});
+        const PoolVector<Pose> starts = pair_starts(database(), shapes(), scan, {matches[i], matches[j], 0.0});
         ++pairs;
         near += nearest_start(starts, truth) < 5.0 ? 1 : 0;
       }
@@ -235,9 +235,9 @@ TEST(PairStarts, lay_both_planes_where_the_regions_are) {
   const Pose truth = corner_view(random);
   const SeenScan seen(test::image_of({{&learned_block(), truth}}));
   const ScanRegions scan = frame_regions(seen.regions);
-  const std::vector<RatedMatch> matches = true_matches(seen, truth);
+  const PoolVector<RatedMatch> matches = true_matches(seen, truth);
   ASSERT_GE(matches.size(), 2U);
-  const std::vector<Pose> starts = pair_starts(database(), shapes(), scan, {matches[0], matches[1], 0.0});
+  const PoolVector<Pose> starts = pair_starts(database(), shapes(), scan, {matches[0], matches[1], 0.0});
   ASSERT_FALSE(starts.empty());
   for (const Pose& start : starts) {
     for (const RatedMatch& match : {matches[0], matches[1]}) {
@@ -253,7 +253,7 @@ TEST(PairStarts, are_none_for_a_region_longer_than_its_face) {
   Random random(8);
   const Pose truth = corner_view(random);
   SeenScan seen(test::image_of({{&learned_block(), truth}}));
-  const std::vector<RatedMatch> matches = true_matches(seen, truth);
+  const PoolVector<RatedMatch> matches = true_matches(seen, truth);
   ASSERT_GE(matches.size(), 2U);
   DescribedRegion& region = seen.regions[static_cast<std::size_t>(matches[0].region)];
   for (Vector3d& corner : region.hull) corner = region.centroid + 2.0 * (corner - region.centroid);
@@ -295,7 +295,7 @@ struct FaceView {
     }
     return image;
   }
-  [[nodiscard]] std::vector<Pose> starts(bool cut, int as_face) const {
+  [[nodiscard]] PoolVector<Pose> starts(bool cut, int as_face) const {
     const ScanRegions scan = frame_regions(seen.regions);
     for (std::size_t r = 0; r < seen.regions.size(); ++r) {
       if (test::face_shown(learned_block(), truth, seen.regions[r]) != face) continue;
@@ -304,7 +304,7 @@ struct FaceView {
     ADD_FAILURE() << "the face is not seen";
     return {};
   }
-  [[nodiscard]] std::vector<Pose> starts(bool cut) const { return starts(cut, face); }
+  [[nodiscard]] PoolVector<Pose> starts(bool cut) const { return starts(cut, face); }
 };
 
 TEST(SingleStarts, hold_the_true_pose_for_a_whole_face) {
@@ -330,7 +330,7 @@ TEST(SingleStarts, lay_the_face_on_the_plane_of_the_region) {
   for (const bool cut : {false, true}) {
     const FaceView view(2, 0.3, cut ? 0.4 : 0.0);
     const ModelFace& face = learned_block().faces[2];
-    const std::vector<Pose> starts = view.starts(cut);
+    const PoolVector<Pose> starts = view.starts(cut);
     ASSERT_FALSE(starts.empty());
     for (const Pose& start : starts) {
       EXPECT_GT((view.truth.rotation * face.normal).dot(start.rotation * face.normal), 0.999);

@@ -28,7 +28,7 @@ const Database& database() {
 const CompiledModel& model(int index) { return database().models()[static_cast<std::size_t>(index)]; }
 
 struct Found {
-  std::vector<StartPose> starts;
+  PoolVector<StartPose> starts;
   StartSearchCounts counts;
 };
 
@@ -247,12 +247,12 @@ TEST(StartSearch, what_is_taken_on_the_way_takes_no_part_in_the_rest) {
   const std::size_t before = search.starts().size();
   const int taken = search.starts()[0].regions[0];
   for (const int cell : scan.regions[static_cast<std::size_t>(taken)].region.cells) take(scan, cell);
-  const std::vector<StartPose> known = search.starts();
+  const PoolVector<StartPose> known = search.starts();
   while (search.look_further(1000)) {
   }
   ASSERT_GT(search.starts().size(), before);
   for (std::size_t i = 0; i < search.starts().size(); ++i) {
-    const std::vector<int>& regions = search.starts()[i].regions;
+    const PoolVector<int>& regions = search.starts()[i].regions;
     if (i < before && regions == known[i].regions) continue;
     EXPECT_EQ(std::count(regions.begin(), regions.end(), taken), 0);
   }

@@ -173,9 +173,13 @@ RecognitionResult search(const Database& database, const RangeImage& image, cons
                          const RecognizeOptions& options = {}, const Deadline& deadline = {}) {
   const PinholeCamera& of_sensor = database.content().sensor.camera;
   const auto regions = extract_regions(image, of_sensor, database.content().segmentation);
-  const ScanContext scan{image, of_sensor, database, regions, std::make_unique<NearestDataCell>(image, of_sensor)};
+  const NearestDataCell data(image, of_sensor);
+  const ScanContext scan{image, of_sensor, database, regions, data};
+  Recognition found;
+  search_two_way(scan, options, deadline, found, two_way);
   RecognitionResult result;
-  search_two_way(scan, options, deadline, result, two_way);
+  SpareDetections none;
+  report(found, image, of_sensor, database, result, none);
   return result;
 }
 
