@@ -34,6 +34,7 @@ struct Experiment {
 [[nodiscard]] Experiment add_scale(CLI::App& app);           // Section IV, by size of the database
 [[nodiscard]] Experiment add_sensor_effect(CLI::App& app);   // Section III, what the sensor model takes into account
 [[nodiscard]] Experiment add_covariance(CLI::App& app);      // of reported poses
+[[nodiscard]] Experiment add_compile_cost(CLI::App& app);    // of the compiler
 
 // Options that several experiments have. n: the default number of scenes, 0 = the experiment has no such option.
 void add_common_options(CLI::App& command, ExperimentOptions& options, int n);

@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
                                                           foresight::add_potentials(app),      //
                                                           foresight::add_scale(app),           //
                                                           foresight::add_deadlines(app),       //
-                                                          foresight::add_sensor_effect(app)};
+                                                          foresight::add_sensor_effect(app),   //
+                                                          foresight::add_compile_cost(app)};
   return foresight::run_program("experiments", app, argc, argv, [&] {
     for (const foresight::Experiment& experiment : experiments) {
       if (experiment.command->parsed()) return experiment.run();

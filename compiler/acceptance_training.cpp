@@ -123,21 +123,16 @@ Scene training_scene(const Cast& cast, const SensorModel& sensor, const Acceptan
   std::vector<CadModel> models;
   for (const int i : chosen) models.push_back(cast.models[static_cast<std::size_t>(i)]);
   const int count = static_cast<int>(models.size());
-  Scene scene = generate_scene(models, sensor, {count, count, sensor.background}, options.seed,
+  const int measured = chosen.front() == 0 ? 0 : -1;  // nobody asks how much of the others is visible
+  Scene scene = generate_scene(models, sensor, {count, count, sensor.background, measured}, options.seed,
                                static_cast<std::uint64_t>(index));
   for (SceneObject& object : scene.objects) object.model = chosen[static_cast<std::size_t>(object.model)];
   return scene;
 }
 
-struct PosedModel {
-  const CompiledModel& model;
-  const Pose& T_sensor_model;
-};
-
 // The share of the cells showing either, each alone, that show the same surface as far as the sensor can tell.
-double same_share(const PosedModel& a, const PosedModel& b, const SensorModel& sensor) {
-  return same_share(render(a.model, a.T_sensor_model, sensor.camera), render(b.model, b.T_sensor_model, sensor.camera),
-                    std::max(kSameDistance, agreeing_distance(sensor)), sensor.matching_window / 2);
+double same_share(const Rendering& a, const Rendering& b, const SensorModel& sensor) {
+  return same_share(a, b, std::max(kSameDistance, agreeing_distance(sensor)), sensor.matching_window / 2);
 }
 
 // The pose moved and turned about the object's centre.
@@ -169,9 +164,11 @@ class SceneTeacher {
       if (object.model == 0 && object.visible_fraction >= kLeastVisible) truth_ = object.T_sensor_model;
       present_ = present_ || object.model == 0;
       if (object.model > 0) {
-        impostors_.emplace_back(drawable(cast.models[static_cast<std::size_t>(object.model)]), object.T_sensor_model);
+        const CompiledModel other = drawable(cast.models[static_cast<std::size_t>(object.model)]);
+        impostors_.push_back(render(other, object.T_sensor_model, context_.camera));
       }
     }
+    if (truth_) true_view_ = drawn(*truth_);
   }
 
   Lessons teach(const AcceptanceTrainingOptions& options, Random random) {
@@ -189,8 +186,8 @@ class SceneTeacher {
     const std::size_t most = std::min(static_cast<std::size_t>(options.most_wrong_starts), starts.size());
     for (std::size_t i = 0; i < most; ++i) {
       const StartPose& start = starts[i];
-      const PosedModel posed{model_, start.T_sensor_model};
-      const bool is_near = truth_ && same_share(posed, {model_, *truth_}, labelled_.sensor) >= kNearShare;
+      const bool is_near =
+          truth_ && same_share(drawn(start.T_sensor_model), true_view_, labelled_.sensor) >= kNearShare;
       if (!is_near) wrong.push_back(i);
       if (!is_near || i >= last_right || ++near > options.most_near) continue;
       const bool first = lessons_.qualities.empty();
@@ -203,6 +200,8 @@ class SceneTeacher {
   }
 
  private:
+  [[nodiscard]] Rendering drawn(const Pose& pose) const { return render(model_, pose, context_.camera); }
+
   [[nodiscard]] Features rough_features(const StartPose& start) const {
     EvidenceOptions rough;
     rough.distance = kStartDistance;
@@ -229,10 +228,10 @@ class SceneTeacher {
   // Refines a start and takes down what its evidence looks like. Whether it came to a right pose.
   bool learn(const Pose& start) {
     const SettledPose settled = localize_and_settle(context_, labelled_, 0, start, {}, settling_);
-    const PosedModel posed{model_, settled.localization.T_sensor_model};
-    const double share = truth_ ? same_share(posed, {model_, *truth_}, labelled_.sensor) : 0.0;
+    const Rendering view = drawn(settled.localization.T_sensor_model);
+    const double share = truth_ ? same_share(view, true_view_, labelled_.sensor) : 0.0;
     const bool right = share >= kRightShare;
-    if (right || is_wrong(posed, share)) {
+    if (right || is_wrong(view, share)) {
       const Features features = evidence_features(settled.evidence);
       (right ? lessons_.right : lessons_.wrong).push_back(features);
     }
@@ -241,10 +240,10 @@ class SceneTeacher {
 
   // Neither right nor wrong: a pose of an object that is there but hardly visible, one a little beside the true one,
   // and one at an impostor that this view, or a symmetry of the object, cannot be told from the object.
-  bool is_wrong(const PosedModel& posed, double share) const {
+  bool is_wrong(const Rendering& view, double share) const {
     if (share >= kWrongShare || (present_ && !truth_)) return false;
-    return std::all_of(impostors_.begin(), impostors_.end(), [&](const auto& impostor) {
-      return same_share(posed, {impostor.first, impostor.second}, labelled_.sensor) < kWrongShare;
+    return std::all_of(impostors_.begin(), impostors_.end(), [&](const Rendering& impostor) {
+      return same_share(view, impostor, labelled_.sensor) < kWrongShare;
     });
   }
 
@@ -255,7 +254,8 @@ class SceneTeacher {
   PoseChecker settling_;
   std::optional<Pose> truth_;
   bool present_ = false;
-  std::vector<std::pair<CompiledModel, Pose>> impostors_;
+  Rendering true_view_;               // where there is a truth
+  std::vector<Rendering> impostors_;  // and boxes, each alone
   Lessons lessons_;
 };
 

@@ -19,6 +19,7 @@
 #include <stdexcept>
 
 #include "common/errors.h"
+#include "compiler/flat_vertices.h"
 #include "compiler/solid_check.h"
 #include "compiler/triangle_mesh.h"
 
@@ -218,6 +219,7 @@ CadModel read_cad_model(const std::string& file, const CadReadOptions& options) 
   for (Vector3d& v : model.vertices) v *= options.unit_mm;
   model.triangles = std::move(mesh.triangles);
   find_planar_faces(model, options);
+  drop_flat_vertices(model, options);
   return model;
 }
 

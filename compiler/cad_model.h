@@ -39,7 +39,7 @@ struct CadModel {
 };
 
 // OBJ, STL, PLY or OFF. Duplicate vertices are welded, degenerate triangles dropped, an inside-out solid turned: safe
-// repairs, each listed in `repairs`. Throws InputError that names the fault: missing, empty, unreadable, no triangles,
+// repairs, each listed in `repairs`. Vertices that shape nothing (compiler/flat_vertices.h) are taken out. Throws InputError that names the fault: missing, empty, unreadable, no triangles,
 // open edges (how many, where the first is), non-manifold edges, inconsistent orientation that cannot be mended, zero volume.
 [[nodiscard]] CadModel read_cad_model(const std::string& file, const CadReadOptions& options = {});
 

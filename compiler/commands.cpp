@@ -151,8 +151,12 @@ int run_compile(const CompileCommand& command) {
     const auto& faces = database.models[i].faces;
     if (std::all_of(faces.begin(), faces.end(), [](const ModelFace& face) { return face.views_found == 0; })) {
       throw InputError(command.cad_files[i], "no face of it is found in any simulated view by this sensor",
-                       "check the unit, or describe a sensor that resolves the object's faces");
+                       "check the unit, or describe a sensor that resolves the object's faces; curved surfaces have none to find");
     }
+    const auto found = std::count_if(faces.begin(), faces.end(), [](const ModelFace& face) { return face.views_found > 0; });
+    if (static_cast<std::size_t>(found) < options.most_faces) continue;
+    std::cerr << "foresightc: " << command.cad_files[i] << ": warning: statistics are kept of the " << found
+              << " faces found in most views only; a curved surface cut into facets is not recognized by them\n";
   }
   for (std::size_t i = 0; i < cads.size(); ++i) {
     if (database.models[i].golden_scan) continue;

@@ -1,5 +1,6 @@
 #include "compiler/compile.h"
 
+#include <algorithm>
 #include <set>
 
 #include "common/errors.h"
@@ -29,6 +30,10 @@ CompiledModel geometry_of(const CadModel& cad) {
   return model;
 }
 
+bool finds_a_face(const CompiledModel& model) {
+  return std::any_of(model.faces.begin(), model.faces.end(), [](const ModelFace& face) { return face.views_found > 0; });
+}
+
 void refuse_different(const CompiledDatabase& first, const NamedDatabase& other, const std::string& first_file) {
   const auto refuse = [&](bool same, const std::string& what) {
     if (same) return;
@@ -45,17 +50,29 @@ void refuse_different(const CompiledDatabase& first, const NamedDatabase& other,
 }  // namespace
 
 CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, const CompileOptions& options,
-                            const std::function<void(int)>& progress) {
+                            const std::function<void(int)>& progress,
+                            const std::function<void(const char*)>& finished) {
+  const auto end = [&](const char* stage) {
+    if (finished) finished(stage);
+  };
   CompiledModel model = geometry_of(cad);
-  const auto samples = sample_views(cad, sensor, segmentation_options_for(sensor), options.samples, progress);
+  auto samples = sample_views(cad, sensor, segmentation_options_for(sensor), options.samples, progress);
+  keep_faces_found_most(samples, options.most_faces);
+  end("views");
   estimate_statistics(samples, options.density, model);
+  end("statistics");
+  if (!finds_a_face(model)) return model;  // nothing to learn from: callers refuse it
   SurfaceTemplateOptions surface = options.surface;
   surface.distance = sensor.working_distance();
   model.surface = build_surface_template(cad, surface);
+  end("template");
   model.symmetries = list_symmetries(cad, sensor);
+  end("symmetries");
   const CompiledDatabase settings = new_database(sensor, options);
   model.acceptance = train_acceptance(cad, model, settings, options.acceptance);
+  end("acceptance");
   model.golden_scan = choose_golden_scan(cad, model, settings);
+  end("golden scan");
   return model;
 }
 

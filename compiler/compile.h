@@ -18,13 +18,20 @@ namespace foresight {
 struct CompileOptions {
   FaceSampleOptions samples;
   DensityOptions density;
+  // Statistics are kept of so many faces, those found in most views. Recognition matches every region with every face and
+  // every pair of regions with every pair of faces: of a curved surface cut into hundreds of facets that alone would fill
+  // the memory. Limit: > 0.
+  std::size_t most_faces = 100;
   AcceptanceTrainingOptions acceptance;
   SurfaceTemplateOptions surface;    // its distance is overridden by the sensor's working distance
 };
 
-// Statistics, template, symmetries, acceptance and golden scan of one model. progress(done) counts views; may be called from any thread.
+// Statistics, template, symmetries, acceptance and golden scan of one model; nothing beyond its geometry where no face is
+// found in any view. progress(done) counts views; may be called from any thread. finished(stage) is called after each
+// stage, in the order they are listed here: "views", "statistics", "template", "symmetries", "acceptance", "golden scan".
 [[nodiscard]] CompiledModel compile_model(const CadModel& cad, const SensorModel& sensor, const CompileOptions& options,
-                                          const std::function<void(int)>& progress = {});
+                                          const std::function<void(int)>& progress = {},
+                                          const std::function<void(const char*)>& finished = {});
 
 // An empty database for a sensor: provenance, extraction and density settings in place.
 [[nodiscard]] CompiledDatabase new_database(const SensorModel& sensor, const CompileOptions& options);

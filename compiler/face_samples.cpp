@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <numbers>
+#include <set>
 
 #include "common/viewing_sphere.h"
 
@@ -16,14 +17,17 @@ namespace {
 // that.
 SimulatedScan view_scan(const CadModel& model, const Eigen::Vector3d& direction, const SensorModel& sensor,
                         Random random) {
-  const double distance = random.uniform(sensor.nearest_distance, sensor.farthest_distance);
-  const double roll = random.uniform(0.0, 2.0 * std::numbers::pi);
-  const Eigen::Vector3d centre = 0.5 * (model.lowest() + model.highest());
-  const PlacedObject object{&model, view_pose(direction, centre, distance, roll)};
+  const PlacedObject object{&model, sampled_pose(model, direction, sensor, random)};
   return SimulatedScene(std::span(&object, 1)).scan(sensor, random);
 }
 
 }  // namespace
+
+Pose sampled_pose(const CadModel& model, const Eigen::Vector3d& direction, const SensorModel& sensor, Random& random) {
+  const double distance = random.uniform(sensor.nearest_distance, sensor.farthest_distance);
+  const double roll = random.uniform(0.0, 2.0 * std::numbers::pi);
+  return view_pose(direction, 0.5 * (model.lowest() + model.highest()), distance, roll);
+}
 
 std::vector<RegionFace> pair_regions_with_faces(const PoolVector<DescribedRegion>& regions,
                                                 const std::vector<CellLabel>& labels, double smallest_share) {
@@ -54,6 +58,24 @@ ViewSample view_sample(const PoolVector<DescribedRegion>& regions, const std::ve
     }
   }
   return sample;
+}
+
+void keep_faces_found_most(std::vector<ViewSample>& views, std::size_t most) {
+  std::map<int, std::set<std::size_t>> views_of;
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    for (const auto& [face, attributes] : views[view].faces) views_of[face].insert(view);
+  }
+  if (views_of.size() <= most) return;
+  std::vector<std::pair<std::size_t, int>> order;  // views it was not found in, face
+  for (const auto& [face, found] : views_of) order.emplace_back(views.size() - found.size(), face);
+  std::sort(order.begin(), order.end());
+  std::set<int> kept;
+  for (std::size_t i = 0; i < most; ++i) kept.insert(order[i].second);
+  for (ViewSample& view : views) {
+    std::erase_if(view.faces, [&](const auto& seen) { return !kept.contains(seen.face); });
+    std::erase_if(view.pairs,
+                  [&](const auto& seen) { return !kept.contains(seen.first) || !kept.contains(seen.second); });
+  }
 }
 
 std::vector<ViewSample> sample_directions(const CadModel& model, const SensorModel& sensor,

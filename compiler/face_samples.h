@@ -50,6 +50,15 @@ struct ViewSample {
 // The faces and pairs of faces that regions of one image show, given which region shows which face.
 [[nodiscard]] ViewSample view_sample(const PoolVector<DescribedRegion>& regions, const std::vector<RegionFace>& paired);
 
+// Leaves the samples of the `most` faces found in most views, of equals the first, and of pairs of these.
+void keep_faces_found_most(std::vector<ViewSample>& views, std::size_t most);
+
+// T_sensor_model of the model centred on the optical axis, seen from one direction: distance and turn about the axis are
+// drawn, so that the grid meets the faces at every angle. The paper states one distance; a sensor of one distance gives
+// just that.
+[[nodiscard]] Pose sampled_pose(const CadModel& model, const Eigen::Vector3d& direction, const SensorModel& sensor,
+                                Random& random);
+
 // Views of one model from unit directions (model frame, object towards sensor), in their order whatever the number of
 // threads; distance, roll and noise of view i from stream i of the seed. progress(done) may be called from any thread.
 [[nodiscard]] std::vector<ViewSample> sample_directions(const CadModel& model, const SensorModel& sensor,

@@ -324,10 +324,12 @@ SensorModel with_room_for(const CadModel& model, const Pose& T_sensor_model, Sen
 }
 
 // Compares each object's cells with those it would have alone. Noise decides about no cell, so it is left out there.
-void measure_visibility(const std::vector<CadModel>& models, SensorModel sensor, Scene& scene) {
+void measure_visibility(const std::vector<CadModel>& models, SensorModel sensor, std::optional<int> only,
+                        Scene& scene) {
   sensor.depth_noise = 0.0;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     SceneObject& object = scene.objects[i];
+    if (only && object.model != *only) continue;
     const CadModel& model = models[static_cast<std::size_t>(object.model)];
     const auto seen = cells_by_face(scene.scan, static_cast<int>(i), model.faces.size());
     const PlacedObject lone{&model, object.T_sensor_model};
@@ -379,7 +381,7 @@ Scene generate_scene(const std::vector<CadModel>& models, const SensorModel& sen
     objects.push_back({&models[static_cast<std::size_t>(object.model)], object.T_sensor_model});
   }
   scene.scan = SimulatedScene(objects, scene.background).scan(sensor, Random(random.next()));
-  measure_visibility(models, sensor, scene);
+  measure_visibility(models, sensor, options.only_measured, scene);
   return scene;
 }
 

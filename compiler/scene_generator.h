@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct SceneOptions {
   int fewest_objects = 1;   // Limit: >= 1.
   int most_objects = 1;     // Limit: >= fewest_objects, <= number of models (each at most once a scene).
   bool background = false;  // objects rest on a table seen at an angle, instead of floating before nothing
+  // Index of the one model whose visibility is measured; the others' stays 0. Each takes a scan of its own. None: all.
+  std::optional<int> only_measured = std::nullopt;
 };
 
 // Throws UsageError when the options ask for what `models` models cannot give.

@@ -59,6 +59,20 @@ std::vector<SceneTriangle> triangles_of(std::span<const PlacedObject> objects) {
   return triangles;
 }
 
+// The rows and columns in which rays from the camera may meet the triangles: one cell more on each side than these
+// project to, for Embree's floats. All where a corner is not before the camera. Most rays of a view pass by.
+Eigen::AlignedBox2d image_of(const std::vector<SceneTriangle>& triangles, const PinholeCamera& camera) {
+  Eigen::AlignedBox2d cells;
+  for (const SceneTriangle& triangle : triangles) {
+    for (const Vector3d& corner : triangle.corners) {
+      if (!(corner.z() > 0.0)) return {Eigen::Vector2d(-1.0, -1.0), Eigen::Vector2d(camera.columns, camera.rows)};
+      cells.extend(camera.project(corner));
+    }
+  }
+  if (cells.isEmpty()) return cells;
+  return {cells.min() - Eigen::Vector2d::Ones(), cells.max() + Eigen::Vector2d::Ones()};
+}
+
 RTCRay make_ray(const Vector3d& origin, const Vector3d& direction, float farthest) {
   RTCRay ray{};
   ray.org_x = static_cast<float>(origin.x());
@@ -161,7 +175,9 @@ struct SimulatedScene::Impl {
 
   void build();
   void attach_triangles();
-  [[nodiscard]] std::optional<SurfaceHit> nearest(const Vector3d& origin, const Vector3d& direction) const;
+  // among_objects: whether the ray may meet any.
+  [[nodiscard]] std::optional<SurfaceHit> nearest(const Vector3d& origin, const Vector3d& direction,
+                                                  bool among_objects = true) const;
   [[nodiscard]] bool blocked(const Vector3d& start, const Vector3d& end) const;
   [[nodiscard]] bool gives_data(const SurfaceHit& hit, const Vector3d& ray, const SensorModel& sensor) const;
 };
@@ -205,11 +221,14 @@ void SimulatedScene::Impl::attach_triangles() {
   rtcReleaseGeometry(geometry);
 }
 
-std::optional<SurfaceHit> SimulatedScene::Impl::nearest(const Vector3d& origin, const Vector3d& direction) const {
+std::optional<SurfaceHit> SimulatedScene::Impl::nearest(const Vector3d& origin, const Vector3d& direction,
+                                                        bool among_objects) const {
   RTCRayHit query{};
-  query.ray = make_ray(origin, direction, std::numeric_limits<float>::infinity());
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  embree::intersect(scene.get(), query);
+  if (among_objects) {
+    query.ray = make_ray(origin, direction, std::numeric_limits<float>::infinity());
+    embree::intersect(scene.get(), query);
+  }
   std::optional<SurfaceHit> best;
   if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
     const SceneTriangle& triangle = triangles[query.hit.primID];
@@ -263,13 +282,15 @@ SimulatedScan SimulatedScene::scan(const SensorModel& sensor, Random random) con
   scan.labels.resize(scan.image.points.size());
   std::vector<double> depths(scan.image.points.size(), 0.0);  // by cell, 0 = no data
   std::vector<double> noise(scan.image.points.size(), 0.0);   // in standard deviations
+  const Eigen::AlignedBox2d objects = image_of(impl_->triangles, camera);
   for (int row = 0; row < camera.rows; ++row) {
     for (int column = 0; column < camera.columns; ++column) {
       const auto cell = static_cast<std::size_t>(scan.image.cell(row, column));
       // One draw for every cell, seen or not: a cell's noise does not depend on what the others show.
       if (sensor.depth_noise > 0.0) noise[cell] = random.gaussian();
       const Vector3d ray = camera.ray(row, column);
-      const std::optional<SurfaceHit> hit = impl_->nearest(Vector3d::Zero(), ray);
+      const std::optional<SurfaceHit> hit =
+          impl_->nearest(Vector3d::Zero(), ray, objects.contains(Eigen::Vector2d(column, row)));
       if (!hit || !impl_->gives_data(*hit, ray, sensor)) continue;
       depths[cell] = hit->t;
       scan.labels[cell] = hit->label;

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <atomic>
+#include <string>
+#include <vector>
 
 #include "common/errors.h"
 #include "compiler/database_writer.h"
@@ -85,6 +88,26 @@ TEST(CompileModel, sees_every_side_of_a_convex_solid) {
   EXPECT_EQ(model.views, 20);
   for (const ModelFace& face : model.faces) EXPECT_GT(face.views_found, 0);
   EXPECT_EQ(model.pairs.size(), 12U);  // the edges of a box: opposite sides are never seen together
+}
+
+TEST(CompileModel, keeps_statistics_of_so_many_faces) {
+  CompileOptions options = quick();
+  options.most_faces = 4;
+  const CompiledModel model = compile_model(test::make_box(80, 60, 40), paper_sensor(), options);
+  EXPECT_EQ(model.faces.size(), 6U);
+  EXPECT_EQ(std::count_if(model.faces.begin(), model.faces.end(), [](const auto& face) { return face.views_found > 0; }),
+            4);
+}
+
+TEST(CompileModel, tells_the_end_of_each_stage_and_stops_where_no_face_is_found) {
+  std::vector<std::string> ended;
+  const auto note = [&](const char* stage) { ended.emplace_back(stage); };
+  (void)compile_model(test::make_step(), paper_sensor(), quick(), {}, note);
+  EXPECT_EQ(ended, (std::vector<std::string>{"views", "statistics", "template", "symmetries", "acceptance", "golden scan"}));
+  ended.clear();
+  const CompiledModel small = compile_model(test::make_box(3, 3, 3), paper_sensor(), quick(), {}, note);
+  EXPECT_EQ(ended, (std::vector<std::string>{"views", "statistics"}));
+  EXPECT_TRUE(small.surface.points.empty());
 }
 
 TEST(CompileModel, depends_on_the_sensor_and_not_on_the_threads) {

@@ -198,5 +198,49 @@ TEST(SampleViews, reports_every_view_once) {
   EXPECT_EQ(sum, 20 * 21 / 2);
 }
 
+// Face f is seen in views 0 ... f, face 0 twice in its view; with each pair.
+std::vector<ViewSample> stairs(int faces) {
+  std::vector<ViewSample> views(static_cast<std::size_t>(faces));
+  for (int view = 0; view < faces; ++view) {
+    ViewSample& sample = views[static_cast<std::size_t>(view)];
+    for (int face = view; face < faces; ++face) {
+      sample.faces.push_back({face, {}});
+      for (int other = face + 1; other < faces; ++other) sample.pairs.push_back({face, other, {}});
+    }
+  }
+  views.front().faces.push_back({0, {}});
+  return views;
+}
+
+TEST(FacesFoundMost, stay_with_the_pairs_of_two_of_them) {
+  std::vector<ViewSample> views = stairs(5);
+  keep_faces_found_most(views, 2);
+  std::set<int> faces;
+  for (const ViewSample& view : views) {
+    for (const auto& seen : view.faces) faces.insert(seen.face);
+    for (const auto& seen : view.pairs) EXPECT_EQ(std::pair(seen.first, seen.second), std::pair(3, 4));
+  }
+  EXPECT_EQ(faces, (std::set<int>{3, 4}));
+  EXPECT_EQ(views[3].pairs.size(), 1U);
+}
+
+TEST(FacesFoundMost, are_all_where_there_are_no_more) {
+  std::vector<ViewSample> views = stairs(5);
+  keep_faces_found_most(views, 5);
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    EXPECT_EQ(views[view].faces.size(), stairs(5)[view].faces.size());
+    EXPECT_EQ(views[view].pairs.size(), stairs(5)[view].pairs.size());
+  }
+}
+
+TEST(FacesFoundMost, are_the_first_of_equals) {
+  std::vector<ViewSample> views(1);
+  for (int face = 4; face >= 0; --face) views[0].faces.push_back({face, {}});
+  keep_faces_found_most(views, 2);
+  ASSERT_EQ(views[0].faces.size(), 2U);
+  EXPECT_EQ(views[0].faces[0].face, 1);
+  EXPECT_EQ(views[0].faces[1].face, 0);
+}
+
 }  // namespace
 }  // namespace foresight

@@ -121,6 +121,20 @@ TEST(SceneGenerator, same_seed_and_index_give_the_same_scene) {
   EXPECT_NE(std::memcmp(a.scan.image.points.data(), reseeded.scan.image.points.data(), bytes), 0);
 }
 
+TEST(SceneGenerator, measures_the_visibility_of_one_model_where_no_more_is_asked) {
+  const std::vector<CadModel> models = six_models();
+  const SensorModel sensor = small_sensor();
+  const Scene all = generate_scene(models, sensor, {3, 3, true}, 9, 3);
+  const int one = all.objects[1].model;
+  const Scene single = generate_scene(models, sensor, {3, 3, true, one}, 9, 3);
+  ASSERT_EQ(single.objects.size(), all.objects.size());
+  for (std::size_t i = 0; i < all.objects.size(); ++i) {
+    EXPECT_EQ(single.objects[i].T_sensor_model.translation, all.objects[i].T_sensor_model.translation);
+    EXPECT_EQ(single.objects[i].visible_fraction, all.objects[i].model == one ? all.objects[i].visible_fraction : 0.0);
+  }
+  EXPECT_GT(all.objects[1].visible_fraction, 0.0);
+}
+
 TEST(SceneGenerator, single_object_is_inside_the_image_in_the_working_range_and_wholly_visible) {
   const std::vector<CadModel> models = six_models();
   SensorModel sensor = small_sensor();

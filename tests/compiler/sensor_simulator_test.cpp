@@ -391,6 +391,36 @@ TEST(SensorSimulator, no_ray_slips_between_triangles) {
   }
 }
 
+TEST(SensorSimulator, scans_show_what_each_ray_meets_wherever_the_object_is) {
+  const SensorModel sensor = exact_sensor();
+  const CadModel model = angle_block();
+  int shown = 0;
+  for (std::uint64_t index = 0; index < 24; ++index) {
+    Pose pose = some_view(index, 500.0);
+    // In the middle, over a border or a corner of the image, around the camera.
+    pose.translation +=
+        Vector3d(index % 2 == 0 ? 0.0 : 85.0, index % 3 == 0 ? 0.0 : -75.0, index % 4 == 3 ? -490.0 : 0.0);
+    const PlacedObject object{&model, pose};
+    const SimulatedScene scene({&object, 1});
+    SensorModel wide = sensor;  // takes whatever is hit from outside
+    wide.nearest_distance = 1e-3;
+    wide.farthest_distance = 1e6;
+    const SimulatedScan scan = scene.scan(wide, Random(1));
+    for (int row = 0; row < sensor.camera.rows; ++row) {
+      for (int column = 0; column < sensor.camera.columns; ++column) {
+        const Vector3d ray = sensor.camera.ray(row, column);
+        const SimulatedScene::Hit hit = scene.cast(Vector3d::Zero(), ray);
+        const CellLabel& label = scan.labels[static_cast<std::size_t>(scan.image.cell(row, column))];
+        const bool facing =
+            hit.face >= 0 && (pose.rotation * model.faces[static_cast<std::size_t>(hit.face)].normal).dot(ray) < 0.0;
+        ASSERT_EQ(label.face, facing ? hit.face : -1) << index << ": " << row << ", " << column;
+        shown += facing ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(shown, 1000);
+}
+
 TEST(SensorSimulator, cast_measures_distance_in_mm_whatever_the_length_of_the_direction) {
   const CadModel model = box(10, 20, 30);
   const PlacedObject object{&model, Pose{}};
