@@ -206,12 +206,14 @@ void share_out_doubtful_cells(Growth& growth) {
 }  // namespace
 
 void settle_borders(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                    PlaneLabels& found) {
+                    PlaneLabels& found, const Stop& stop) {
   Growth growth{image, connectivity, options, found};
   growth.measure_reach();
   share_out_doubtful_cells(growth);
+  if (stop && stop()) return;
   const PoolVector<Contact> contacts = contacts_of(growth.connectivity, growth.found.labels);
   const Meetings meetings = find_meetings(growth, contacts);
+  if (stop && stop()) return;
   // A border moves by as many cells as the patches that straddled it are wide, not farther: planes also cross where
   // there is no crease, as that of a block's side does on the floor beside the block.
   const auto farthest = static_cast<unsigned char>(options.seed_block);

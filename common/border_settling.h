@@ -6,8 +6,9 @@
 namespace foresight {
 
 // Gives cells where two planes meet to the one they belong to. Where the planes form a crease that is decided by their
-// line of intersection, which is known much better than any single data point; elsewhere by the nearer plane.
+// line of intersection, which is known much better than any single data point; elsewhere by the nearer plane. Stopped:
+// unfinished.
 void settle_borders(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                    PlaneLabels& found);
+                    PlaneLabels& found, const Stop& stop = {});
 
 }  // namespace foresight

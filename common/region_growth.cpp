@@ -75,7 +75,7 @@ void fit_inner_cells(const Coordinates& points, const SegmentationOptions& optio
 }  // namespace
 
 void grow_planes(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                 PlaneLabels& found) {
+                 PlaneLabels& found, const Stop& stop) {
   Growth growth{image, connectivity, options, found};
   growth.measure_reach();
   GrowthQueue queue;
@@ -100,7 +100,9 @@ void grow_planes(const RangeImage& image, const CellConnectivity& connectivity, 
     });
   });
   GrowthQueue::Candidate nearest{};
-  while (queue.pop(nearest)) {
+  constexpr int kAtOnce = 4096;  // candidates between two questions whether to stop
+  for (int taken = 0; queue.pop(nearest); ++taken) {
+    if (taken % kAtOnce == 0 && stop && stop()) return;
     if (growth.label(nearest.cell) != 0) continue;
     growth.join(nearest.cell, nearest.label);
     offer(nearest.cell, nearest.label);

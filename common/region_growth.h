@@ -6,9 +6,9 @@
 namespace foresight {
 
 // Best-first region growing by cells: of all free cells beside a plane's cells and within the grow tolerance of the
-// plane, those nearest to it join first. Planes do not change, their sums do.
+// plane, those nearest to it join first. Planes do not change, their sums do. Stopped: unfinished.
 void grow_planes(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                 PlaneLabels& found);
+                 PlaneLabels& found, const Stop& stop = {});
 
 // Planes from the cells as they stand now, as far as possible without those beside other planes or none, whose data
 // points may lie between two surfaces. Sets free the cells that are out of the grow tolerance then.

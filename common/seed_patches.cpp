@@ -112,11 +112,15 @@ PoolVector<std::pair<int, int>> touching_windows(const CellConnectivity& connect
 }  // namespace
 
 void seed_on_grid(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                  PlaneLabels& found) {
+                  PlaneLabels& found, const Stop& stop) {
+  const auto stopped = [&stop] { return stop && stop(); };
   const int side = options.seed_block;
   const Squares blocks = flat_blocks(image, options);
+  if (stopped()) return;
   Patches patches = tile_with_squares(image, connectivity, options, blocks);
+  if (stopped()) return;
   const PoolVector<int> merged = merge_best_first(patches.sums, patches.touching, largest_rms(options));
+  if (stopped()) return;
   const PoolVector<int> plane_of_patch = number_planes(merged, patches.sums, fewest_cells(options, side), 0);
 
   PoolVector<int> plane_of(blocks.sums.size(), -1);
@@ -146,8 +150,9 @@ void seed_on_grid(const RangeImage& image, const CellConnectivity& connectivity,
 }
 
 void seed_between(const RangeImage& image, const CellConnectivity& connectivity, const SegmentationOptions& options,
-                  int side, PlaneLabels& found) {
+                  int side, PlaneLabels& found, const Stop& stop) {
   Windows windows = flat_windows(image, options, side, found);
+  if (stop && stop()) return;
   const std::size_t before = found.planes.size();
   const PoolVector<int> merged =
       merge_best_first(windows.patches, touching_windows(connectivity, windows), largest_rms(options));

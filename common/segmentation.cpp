@@ -18,8 +18,8 @@ namespace {
 // From seeds to planes grown to their borders. Whether it came to its end.
 bool finish_round(const RangeImage& image, const Coordinates& points, const CellConnectivity& connectivity,
                   const SegmentationOptions& options, PlaneLabels& found, const Stop& stop) {
-  const auto grow = [&] { grow_planes(image, connectivity, options, found); };
-  const auto settle = [&] { settle_borders(image, connectivity, options, found); };
+  const auto grow = [&] { grow_planes(image, connectivity, options, found, stop); };
+  const auto settle = [&] { settle_borders(image, connectivity, options, found, stop); };
   const auto refit = [&] { refit_planes(points, options, found); };
   const auto split = [&] { split_planes(image, connectivity, options, found); };
   const auto merge = [&] { merge_touching_planes(connectivity, options, found); };
@@ -109,10 +109,10 @@ PoolVector<Region> segment(const RangeImage& image, const SegmentationOptions& o
   const CellConnectivity connectivity(points, options);
   PlaneLabels found(image.size());
   if (stopped()) return {};
-  seed_on_grid(image, connectivity, options, found);
+  seed_on_grid(image, connectivity, options, found, stop);
   if (!finish_round(image, points, connectivity, options, found, stop)) return {};
-  seed_between(image, connectivity, options, (options.seed_block + 1) / 2,
-               found);  // thin and small faces between the large ones
+  seed_between(image, connectivity, options, (options.seed_block + 1) / 2, found,
+               stop);  // thin and small faces between the large ones
   if (!finish_round(image, points, connectivity, options, found, stop)) return {};
 
   split_planes(image, connectivity, options, found);

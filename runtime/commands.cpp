@@ -177,7 +177,8 @@ int run_localize(const LocalizeCommand& command) {
   result.statistics.verifications = 1;
   result.statistics.energy_evaluations = refined.localization.energy_evaluations;
   result.detections.push_back(to_detection(model, refined));
-  add_covariance(scan.image, scan.camera, database.content().sensor, model, result.detections.back());
+  result.detections.back().covariance =
+      covariance_at(model, refined.localization.T_sensor_model, scan.image, scan.camera, database.content().sensor);
   std::cout << result_json(command.scan, result, scan.read_milliseconds) << "\n";
   return refined.verification.accepted ? kExitDone : kExitNothingFound;
 }

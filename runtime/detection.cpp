@@ -80,10 +80,12 @@ Detection to_detection(const CompiledModel& model, const RefinedPose& refined) {
   return detection;
 }
 
-void add_covariance(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
-                    const CompiledModel& model, Detection& detection) {
-  const PoseCovariance covariance = pose_covariance(model, pose_of(detection.T_sensor_model), image, camera, sensor);
-  std::copy(covariance.data(), covariance.data() + covariance.size(), detection.covariance.begin());  // symmetric
+std::array<double, 36> covariance_at(const CompiledModel& model, const Pose& T_sensor_model, const RangeImage& image,
+                                     const PinholeCamera& camera, const SensorModel& sensor) {
+  const PoseCovariance covariance = pose_covariance(model, T_sensor_model, image, camera, sensor);
+  std::array<double, 36> rows{};
+  std::copy(covariance.data(), covariance.data() + covariance.size(), rows.begin());  // symmetric
+  return rows;
 }
 
 SpareDetections spare_detections(const Database& database) {
@@ -109,8 +111,7 @@ void empty(RecognitionResult& result, SpareDetections& spare) {
   result.milliseconds = {};
 }
 
-void report(const Recognition& found, const RangeImage& image, const PinholeCamera& camera, const Database& database,
-            RecognitionResult& result, SpareDetections& spare) {
+void report(const Recognition& found, const Database& database, RecognitionResult& result, SpareDetections& spare) {
   const auto model_at = [&](int model) -> const CompiledModel& {
     return database.models()[static_cast<std::size_t>(model)];
   };
@@ -134,7 +135,7 @@ void report(const Recognition& found, const RangeImage& image, const PinholeCame
       alternative.T_sensor_model = row_major(other.T_sensor_model);
       alternative.score = other.score;
     }
-    add_covariance(image, camera, database.content().sensor, model_at(object.model), detection);
+    detection.covariance = object.covariance;
   }
 }
 

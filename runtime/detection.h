@@ -27,9 +27,10 @@ struct BoundingBox {
 // A refined pose as a detection: pose, box, fractions and score; no rank, faces, regions or covariance yet.
 [[nodiscard]] Detection to_detection(const CompiledModel& model, const RefinedPose& refined);
 
-// Fills in the covariance. sensor: its noise. REQUIRES: the detection is of the model.
-void add_covariance(const RangeImage& image, const PinholeCamera& camera, const SensorModel& sensor,
-                    const CompiledModel& model, Detection& detection);
+// As Detection::covariance, of a model at a pose in an image. sensor: its noise.
+[[nodiscard]] std::array<double, 36> covariance_at(const CompiledModel& model, const Pose& T_sensor_model,
+                                                   const RangeImage& image, const PinholeCamera& camera,
+                                                   const SensorModel& sensor);
 
 // Entries of results that are not needed now; their lists and names keep their memory for the next scan.
 struct SpareDetections {
@@ -44,7 +45,6 @@ struct SpareDetections {
 void empty(RecognitionResult& result, SpareDetections& spare);
 
 // What was found, in place of what the result holds. Allocates only what neither the result nor the spare has.
-void report(const Recognition& found, const RangeImage& image, const PinholeCamera& camera, const Database& database,
-            RecognitionResult& result, SpareDetections& spare);
+void report(const Recognition& found, const Database& database, RecognitionResult& result, SpareDetections& spare);
 
 }  // namespace foresight

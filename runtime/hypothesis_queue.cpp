@@ -24,13 +24,14 @@ bool HypothesisQueue::Node::operator<(const Node& other) const {
 
 HypothesisQueue::HypothesisQueue(const PoolVector<RegionMatches>& matches, const PoolVector<DescribedRegion>& regions,
                                  const Database& database, const MatchRater& rater, RegionRelations& relations,
-                                 double least_rating)
+                                 double least_rating, int most)
     : matches_(matches),
       regions_(regions),
       database_(database),
       rater_(rater),
       relations_(relations),
       least_rating_(least_rating),
+      most_(static_cast<std::size_t>(most)),
       runs_(matches.size()) {
   PoolVector<double> best(matches.size(), 0.0);
   for (std::size_t r = 0; r < matches.size(); ++r) {
@@ -101,16 +102,29 @@ MatchPair HypothesisQueue::pair_of(const Node& node) const {
           matches_[static_cast<std::size_t>(node.b)][static_cast<std::size_t>(node.match_b)], node.bound};
 }
 
-std::optional<MatchPair> HypothesisQueue::next(const std::function<bool(int)>& is_free) {
-  while (!nodes_.empty() && nodes_.top().bound >= least_rating_) {
+void HypothesisQueue::split_by_match(const Node& node) {
+  pairs_.clear();
+  visit_matches(node, [this](const Node& pair) {
+    if (pair.bound >= least_rating_) pairs_.push_back(pair);
+  });
+  if (pairs_.size() > most_) {
+    std::nth_element(pairs_.begin(), pairs_.begin() + static_cast<std::ptrdiff_t>(most_), pairs_.end(),
+                     [](const Node& x, const Node& y) { return y < x; });
+    pairs_.resize(most_);
+  }
+  for (const Node& pair : pairs_) nodes_.push(pair);
+}
+
+std::optional<MatchPair> HypothesisQueue::next(const std::function<bool(int)>& is_free, const Stop& stop) {
+  constexpr int kAtOnce = 16;  // nodes between two questions whether to stop
+  for (int taken = 1; !nodes_.empty() && nodes_.top().bound >= least_rating_; ++taken) {
+    if (taken % kAtOnce == 0 && stop && stop()) return std::nullopt;
     const Node node = nodes_.top();
     nodes_.pop();
     if (!is_free(node.a) || !is_free(node.b)) continue;
     if (node.match_a >= 0) return pair_of(node);
     if (node.model >= 0) {
-      visit_matches(node, [this](const Node& pair) {
-        if (pair.bound >= least_rating_) nodes_.push(pair);
-      });
+      split_by_match(node);
     } else {
       split_by_model(node);
     }

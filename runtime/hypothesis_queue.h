@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <queue>
 
@@ -34,13 +35,16 @@ class RegionRelations {
 // pair.
 class HypothesisQueue {
  public:
-  // All must outlive the queue. least_rating: of the pairs it gives.
+  // All must outlive the queue. least_rating: of the pairs it gives. most: so many pairs are asked for at most; of two
+  // regions and a model, no more are kept, so that an object of hundreds of like faces does not fill the memory.
+  // Limit: >= 0.
   HypothesisQueue(const PoolVector<RegionMatches>& matches, const PoolVector<DescribedRegion>& regions,
-                  const Database& database, const MatchRater& rater, RegionRelations& relations, double least_rating);
+                  const Database& database, const MatchRater& rater, RegionRelations& relations, double least_rating,
+                  int most = std::numeric_limits<int>::max());
 
-  // None when there are no more pairs of regions that are free. A region that is not free once must not become so
-  // again: its pairs may be gone.
-  [[nodiscard]] std::optional<MatchPair> next(const std::function<bool(int)>& is_free);
+  // None when there are no more pairs of regions that are free, or when it is stopped. A region that is not free once
+  // must not become so again: its pairs may be gone.
+  [[nodiscard]] std::optional<MatchPair> next(const std::function<bool(int)>& is_free, const Stop& stop = {});
   // The pairs of two regions, the best first, at most so many; whether `next` gave them before or not.
   [[nodiscard]] PoolVector<MatchPair> pairs_of(int region_a, int region_b, int most) const;
 
@@ -62,6 +66,7 @@ class HypothesisQueue {
     bool operator<(const Node& other) const;
   };
   void split_by_model(const Node& node);
+  void split_by_match(const Node& node);
   // Calls visit for each pair of matches of the node's regions and model.
   template <typename Visit>
   void visit_matches(const Node& node, const Visit& visit) const;
@@ -73,8 +78,10 @@ class HypothesisQueue {
   const MatchRater& rater_;
   RegionRelations& relations_;
   double least_rating_;
+  std::size_t most_;
   PoolVector<PoolVector<Run>> runs_;  // by region, models ascending
   std::priority_queue<Node, PoolVector<Node>> nodes_;
+  PoolVector<Node> pairs_;  // scratch: of the node taken apart
 };
 
 }  // namespace foresight

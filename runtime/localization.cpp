@@ -195,13 +195,15 @@ EnergyGradient energy_gradient(const EnergyEvaluation& evaluation, const Eigen::
 }
 
 Localization localize(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start,
-                      const NearestData& data, const LocalizationOptions& options) {
+                      const NearestData& data, const LocalizationOptions& options, const Stop& stop) {
   assert(options.sigma > 0.0 && options.translation_step > 0.0 && options.rotation_step > 0.0 &&
          options.most_rounds >= 1);
   Refinement refinement(model, sphere, start, data, options);
   for (int round = 0; round < options.most_rounds; ++round) {
+    if (stop && stop()) break;
     const bool translated = refinement.translate();
     refinement.update_aspect();
+    if (stop && stop()) break;
     const bool rotated = refinement.rotate();
     refinement.update_aspect();
     // Paper: until E(q) = E_0. The two energies may sum over different aspects; that no step was taken says the same

@@ -6,6 +6,7 @@
 #include "common/compiled_model.h"
 #include "common/memory_pool.h"
 #include "common/pose.h"
+#include "common/segmentation.h"
 #include "common/viewing_sphere.h"
 #include "runtime/foresight.h"
 #include "runtime/nearest_data.h"
@@ -73,7 +74,8 @@ struct EnergyGradient {
 // The paper's pseudo-code: line searches of fixed step against the gradient, translation and rotation in turn, the
 // aspect fixed within each, until neither takes a step. sphere: ViewingSphere(80).
 // A start in which nothing is visible is returned as it is, with energy 0; verification accepts no such pose.
+// stop: asked between line searches; the pose is as good as it has become by then.
 [[nodiscard]] Localization localize(const CompiledModel& model, const ViewingSphere& sphere, const Pose& start,
-                                    const NearestData& data, const LocalizationOptions& options);
+                                    const NearestData& data, const LocalizationOptions& options, const Stop& stop = {});
 
 }  // namespace foresight

@@ -52,11 +52,11 @@ MatchRater::MatchRater(const Database& database, const RatingOptions& options)
   }
 }
 
-PoolVector<RegionMatches> MatchRater::rate(const PoolVector<DescribedRegion>& regions) const {
+PoolVector<RegionMatches> MatchRater::rate(const PoolVector<DescribedRegion>& regions, const Stop& stop) const {
   const double faces = static_cast<double>(database_.faces().size());
   const double least = std::exp(options_.least_rating);
   PoolVector<RegionMatches> rated(regions.size());
-  for (std::size_t i = 0; i < regions.size(); ++i) {
+  for (std::size_t i = 0; i < regions.size() && !(stop && stop()); ++i) {
     const bool cut = is_cut(regions[i]);
     for (std::size_t j = 0; j < database_.faces().size(); ++j) {
       const ModelFace& face = database_.face(static_cast<int>(j));

@@ -33,8 +33,8 @@ class MatchRater {
  public:
   explicit MatchRater(const Database& database, const RatingOptions& options = {});
 
-  // By region.
-  [[nodiscard]] PoolVector<RegionMatches> rate(const PoolVector<DescribedRegion>& regions) const;
+  // By region. Stopped: the first regions only.
+  [[nodiscard]] PoolVector<RegionMatches> rate(const PoolVector<DescribedRegion>& regions, const Stop& stop = {}) const;
   // The same for two matches of one model, given how their regions stand to each other. cut: either region is.
   [[nodiscard]] double rate(const FacePair& pair, const RelationVector& relation, bool cut) const;
   // No two matches are rated higher together.

@@ -2,6 +2,8 @@
 // detection.h says it in the caller's.
 #pragma once
 
+#include <array>
+
 #include "common/memory_pool.h"
 #include "common/pose.h"
 #include "runtime/foresight.h"
@@ -29,6 +31,7 @@ struct FoundObject {
   RefinedPose pose;
   double score = 0.0;
   int rank = 0;
+  std::array<double, 36> covariance{};
   PoolVector<int> faces;
   PoolVector<int> regions;
   PoolVector<FoundAlternative> alternatives;

@@ -115,8 +115,7 @@ void recognize(const RangeImage& image, const PinholeCamera& camera, const Datab
     double timed = 0.0;  // by the searches
     watch.lap(timed);
   }
-  report(found, image, camera, database, result, spare);
-  watch.lap(result.milliseconds.verify);
+  report(found, database, result, spare);
   total.lap(result.milliseconds.total);
 }
 

@@ -36,16 +36,17 @@ Pose settle(const ScanContext& scan, int model, Pose pose, PoseChecker& settling
 }
 
 SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model, const Pose& start,
-                                const RecognizeOptions& options, PoseChecker& settling) {
+                                const RecognizeOptions& options, PoseChecker& settling, const Stop& stop) {
   const CompiledModel& compiled = scan.database.models()[static_cast<std::size_t>(model)];
   SettledPose result;
-  result.localization = localize(compiled, scan.sphere, start, scan.data, near_localization_options(options));
+  result.localization = localize(compiled, scan.sphere, start, scan.data, near_localization_options(options), stop);
   Pose& pose = result.localization.T_sensor_model;
   const EvidenceOptions fine = judging_options(labelled.sensor);
   const auto balance = [](const PoseEvidence& evidence) {
     return evidence.owned - evidence.behind - evidence.tilted - evidence.front;
   };
   result.evidence = gather_evidence(compiled, pose, labelled, fine);
+  if (stop && stop()) return result;
   const Pose settled = settle(scan, model, pose, settling);
   PoseEvidence at_settled = gather_evidence(compiled, settled, labelled, fine);
   if (balance(at_settled) > balance(result.evidence)) {

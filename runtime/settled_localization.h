@@ -27,9 +27,9 @@ struct SettledPose {
 
 // Localization ends within its steps of a millimetre and a degree; the planes of regions, fitted to hundreds of cells,
 // know better. The settled pose is taken where the scan agrees with it more.
-// settling: of this scan, with settling_options.
+// settling: of this scan, with settling_options. stop: what is left to do is left out.
 [[nodiscard]] SettledPose localize_and_settle(const ScanContext& scan, const LabelledScan& labelled, int model,
-                                              const Pose& start, const RecognizeOptions& options,
-                                              PoseChecker& settling);
+                                              const Pose& start, const RecognizeOptions& options, PoseChecker& settling,
+                                              const Stop& stop = {});
 
 }  // namespace foresight

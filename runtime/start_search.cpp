@@ -34,7 +34,7 @@ StartSearchOptions unpruned(StartSearchOptions options) {
 }  // namespace
 
 StartSearch::StartSearch(const Database& database, const LabelledScan& scan, const StartSearchOptions& options,
-                         StartSearchCounts& counts)
+                         StartSearchCounts& counts, const Stop& stop)
     : database_(database),
       scan_(scan),
       options_(options.pruned ? options : unpruned(options)),
@@ -42,10 +42,10 @@ StartSearch::StartSearch(const Database& database, const LabelledScan& scan, con
       regions_(frame_regions(scan.regions)),
       shapes_(database),
       rater_(database, {.least_rating = options.pruned ? RatingOptions{}.least_rating : kAnyRating}),
-      matches_(rater_.rate(scan.regions)),
+      matches_(rater_.rate(scan.regions, stop)),
       relations_(scan.regions),
       checker_(database, scan),
-      queue_(matches_, regions_.regions, database_, rater_, relations_, options_.least_rating),
+      queue_(matches_, regions_.regions, database_, rater_, relations_, options_.least_rating, options_.most_pairs),
       of_model_(database.models().size()) {
   for (const RegionMatches& matches : matches_) singles_.insert(singles_.end(), matches.begin(), matches.end());
   counts_.matches += static_cast<long>(singles_.size());
@@ -60,7 +60,8 @@ bool StartSearch::look_further(int hypotheses, const Stop& stop) {
   int looked_at = 0;
   for (; pairs_ < options_.most_pairs && looked_at < hypotheses; ++looked_at, ++pairs_) {
     if (stopped(stop)) return true;
-    const std::optional<MatchPair> pair = queue_.next(is_free);
+    const std::optional<MatchPair> pair = queue_.next(is_free, stop);
+    if (!pair && stop && stop()) return true;
     if (!pair) break;
     try_pair(*pair);
   }

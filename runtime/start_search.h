@@ -50,9 +50,10 @@ struct StartSearchCounts {
 class StartSearch {
  public:
   // The database, the scan, the options and the counts must outlive the search. What the scan has taken by the time of
-  // a call takes no part in it. REQUIRES: the models know the faces of their triangles.
+  // a call takes no part in it. stop: asked while matches are rated. REQUIRES: the models know the faces of their
+  // triangles.
   StartSearch(const Database& database, const LabelledScan& scan, const StartSearchOptions& options,
-              StartSearchCounts& counts);
+              StartSearchCounts& counts, const Stop& stop = {});
 
   // Looks at the next hypotheses, at most so many: the best rated pairs first, then single regions. Whether more may be
   // left. stop: asked on the way.

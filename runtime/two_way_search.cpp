@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 
 #include "runtime/canonical_pose.h"
+#include "runtime/detection.h"
 #include "runtime/interpenetration.h"
 #include "runtime/pose_check.h"
 #include "runtime/pose_evidence.h"
@@ -31,11 +33,12 @@ struct AcceptedPose {
   Pose T_sensor_model;
 };
 
-constexpr double kNearSymmetricQuality = 0.8;  // of the pose found, for a near-symmetric one to be worth refining
-constexpr int kMostDoublings = 12;             // of a stretch of hypotheses
-constexpr int kRoughStride = 2;                // for a look at whether a start is worth refining
-constexpr double kRivalQuality = 0.5;          // of the start of the pose found, for a rival's to be worth settling
-constexpr double kRivalView = 0.9;             // of the cells a rival's start must show alike to be worth refining
+constexpr double kNearSymmetricQuality = 0.8;        // of the pose found, for a near-symmetric one to be worth refining
+constexpr int kMostDoublings = 12;                   // of a stretch of hypotheses
+constexpr std::chrono::microseconds kDecision{400};  // about what it takes to decide on a candidate, and to report it
+constexpr int kRoughStride = 2;                      // for a look at whether a start is worth refining
+constexpr double kRivalQuality = 0.5;  // of the start of the pose found, for a rival's to be worth settling
+constexpr double kRivalView = 0.9;     // of the cells a rival's start must show alike to be worth refining
 
 StartSearchOptions start_search_options(const RecognizeOptions& options) {
   StartSearchOptions search;
@@ -56,7 +59,7 @@ class TwoWaySearch {
         fine_(judging_options(labelled_.sensor)),
         checker_(scan.database, labelled_),
         settling_(scan.database, labelled_, settling_options(labelled_.sensor)),
-        search_(scan.database, labelled_, start_search_options(options), counts_) {}
+        search_(scan.database, labelled_, start_search_options(options), counts_, stop()) {}
 
   // Looks for starts and tries them by turns: the best rated hypotheses are right so often that what they find, and
   // take, spares looking at most of the others. Starts that look less well wait until more are known.
@@ -64,8 +67,7 @@ class TwoWaySearch {
     bool more = true;
     for (int turn = 0; more && !out_of_limits(); ++turn) {
       watch_.lap(result_.milliseconds.verify);
-      more = search_.look_further(two_way_.first_stretch << std::min(turn, kMostDoublings),
-                                  [this] { return out_of_limits(); });
+      more = search_.look_further(two_way_.first_stretch << std::min(turn, kMostDoublings), stop());
       watch_.lap(result_.milliseconds.hypotheses);
       try_starts(more ? std::max(two_way_.eager_quality - turn * two_way_.eager_step, two_way_.least_eager) : 0.0);
     }
@@ -92,7 +94,14 @@ class TwoWaySearch {
     std::sort(best.begin(), best.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
     return best;
   }
-  [[nodiscard]] bool out_of_limits() const { return limits_reached(options_, deadline_, result_); }
+  // In time for what there is to decide yet.
+  [[nodiscard]] bool out_of_limits() const {
+    if (!deadline_) return limits_reached(options_, deadline_, result_);
+    return limits_reached(options_, *deadline_ - static_cast<int>(candidates_.size()) * kDecision, result_);
+  }
+  [[nodiscard]] Stop stop() const {
+    return [this] { return out_of_limits(); };
+  }
   [[nodiscard]] bool uses_taken(const StartPose& start) const {
     return std::any_of(start.regions.begin(), start.regions.end(),
                        [&](int region) { return is_taken(labelled_, region); });
@@ -144,7 +153,7 @@ class TwoWaySearch {
     candidate.start = start;
     candidate.rank = order_;
     const SettledPose settled =
-        localize_and_settle(scan_, labelled_, start_pose(start).model, from, options_, settling_);
+        localize_and_settle(scan_, labelled_, start_pose(start).model, from, options_, settling_, stop());
     candidate.localization = settled.localization;
     ++result_.statistics.verifications;
     result_.statistics.energy_evaluations += candidate.localization.energy_evaluations;
@@ -172,7 +181,7 @@ class TwoWaySearch {
 
   void try_start(std::size_t i) {
     int& tries = tries_of(start_pose(i));
-    if (tries >= two_way_.most_tries || !worth_refining(i)) return;
+    if (tries >= two_way_.most_tries || !worth_refining(i) || out_of_limits()) return;
     ++tries;
     Candidate candidate = refined(i, start_pose(i).T_sensor_model);
     if (candidate.probability < two_way_.accepted) return;
@@ -241,8 +250,7 @@ class TwoWaySearch {
     for (const auto& [region, count] : cells) regions.push_back({-count, region});
     std::sort(regions.begin(), regions.end());
     if (!regions.empty()) {
-      search_.look_for_rivals(regions[0].second, regions.size() > 1 ? regions[1].second : -1,
-                              [this] { return out_of_limits(); });
+      search_.look_for_rivals(regions[0].second, regions.size() > 1 ? regions[1].second : -1, stop());
     }
     watch_.lap(result_.milliseconds.hypotheses);
   }
@@ -273,6 +281,7 @@ class TwoWaySearch {
     found.pose = pose;
     found.score = candidate.probability;
     found.rank = candidate.rank;
+    found.covariance = covariance_at(model, reported.T_sensor_model, scan_.image, scan_.camera, labelled_.sensor);
     list_supports(reported.T_sensor_model, found);
     found.alternatives = alternatives(candidate);
     take_explained(model, candidate.pose(), fine_, labelled_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/detection.h"
 #include "runtime/explained_regions.h"
 #include "runtime/pose_from_matches.h"
 
@@ -51,6 +52,8 @@ class VerificationInOrder {
     found.pose = refined;
     found.score = refined.verification.matched;
     found.rank = rank;
+    found.covariance = covariance_at(model, refined.localization.T_sensor_model, scan_.image, scan_.camera,
+                                     scan_.database.content().sensor);
     for (const int index : hypothesis.matches) {
       found.faces.push_back(scan_.database.faces()[static_cast<std::size_t>(match(index).face)].face);
       found.regions.push_back(match(index).region);

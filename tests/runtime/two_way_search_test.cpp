@@ -179,7 +179,7 @@ RecognitionResult search(const Database& database, const RangeImage& image, cons
   search_two_way(scan, options, deadline, found, two_way);
   RecognitionResult result;
   SpareDetections none;
-  report(found, image, of_sensor, database, result, none);
+  report(found, database, result, none);
   return result;
 }
 
