@@ -55,9 +55,9 @@ struct SurfaceTemplate {
 enum EvidenceFeature : int {
   kOwnedShare = 0,     // explained cells, weighted by the share of their regions, of those with data on or behind
   kContradictedShare,  // cells with data behind the surface or of another orientation, of those not hidden
-  kMissingShare,       // cells without data, of those not hidden
-  kHiddenShare,        // cells with data before the surface, or beyond the image
-  kFoundPieces,        // triangles at least half explained, of those with data
+  kMissing,            // towards 1 with the share of cells without data and without a reason, of those not hidden
+  kHiddenShare,        // cells with data before the surface, beyond the image, or without data in what may be a shadow
+  kFoundFaces,         // faces at least half explained, of those with data and one more: how many, and whether all
   kAmount,             // how much there is to go by: towards 1 with the number of owned cells
   kOtherSurfaces,      // explained cells that are not of the surface with most of them
   kHiddenBehindOne,    // hidden share times the share of that surface: one surface, and the rest cannot be checked

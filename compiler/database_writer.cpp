@@ -102,9 +102,9 @@ void fill(v1::SurfaceTemplate& message, const SurfaceTemplate& surface) {
 void fill(v1::AcceptanceModel& message, const AcceptanceModel& acceptance) {
   message.set_owned_share(acceptance.weights[kOwnedShare]);
   message.set_contradicted_share(acceptance.weights[kContradictedShare]);
-  message.set_missing_share(acceptance.weights[kMissingShare]);
+  message.set_missing(acceptance.weights[kMissing]);
   message.set_hidden_share(acceptance.weights[kHiddenShare]);
-  message.set_found_pieces(acceptance.weights[kFoundPieces]);
+  message.set_found_faces(acceptance.weights[kFoundFaces]);
   message.set_amount(acceptance.weights[kAmount]);
   message.set_other_surfaces(acceptance.weights[kOtherSurfaces]);
   message.set_hidden_behind_one(acceptance.weights[kHiddenBehindOne]);

@@ -149,9 +149,9 @@ AcceptanceModel from_message(const v1::AcceptanceModel& message) {
   AcceptanceModel acceptance;
   acceptance.weights[kOwnedShare] = message.owned_share();
   acceptance.weights[kContradictedShare] = message.contradicted_share();
-  acceptance.weights[kMissingShare] = message.missing_share();
+  acceptance.weights[kMissing] = message.missing();
   acceptance.weights[kHiddenShare] = message.hidden_share();
-  acceptance.weights[kFoundPieces] = message.found_pieces();
+  acceptance.weights[kFoundFaces] = message.found_faces();
   acceptance.weights[kAmount] = message.amount();
   acceptance.weights[kOtherSurfaces] = message.other_surfaces();
   acceptance.weights[kHiddenBehindOne] = message.hidden_behind_one();

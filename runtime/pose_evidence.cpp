@@ -4,14 +4,16 @@
 #include <cmath>
 
 #include "runtime/rendering.h"
+#include "runtime/shadow.h"
 
 namespace foresight {
 namespace {
 
-constexpr double kDoubt = 30.0;    // cells against every pose, so that a handful of cells for it makes none certain
-constexpr int kFewestCells = 12;   // that say something about a triangle
-constexpr double kMuch = 300.0;    // owned cells at which the amount is a half
-constexpr double kLeftOver = 0.2;  // of a region that is explained but for this share nothing remains for others
+constexpr double kDoubt = 30.0;      // cells against every pose, so that a handful of cells for it makes none certain
+constexpr int kFewestCells = 12;     // that say something about a face
+constexpr double kMuch = 300.0;      // owned cells at which the amount is a half
+constexpr double kFewMissing = 0.1;  // share of cells without data that says half of what all without would
+constexpr double kLeftOver = 0.2;    // of a region that is explained but for this share nothing remains for others
 constexpr double kLeftByLocalization = 0.8;  // Unit: mm.
 constexpr double kJudgedCell = 1.2;          // side; finer ones tell little more. Unit: mm.
 constexpr double kLeastDistance = 1.5;       // Unit: mm.
@@ -66,16 +68,19 @@ struct DrawnCell {
   int cell = 0;         // of the image, -1 beyond it
   int triangle = 0;     // of the model
   float depth = 0.0F;   // z of the surface drawn. Unit: mm.
+  Eigen::Vector3f ray;  // with z = 1
   float facing = 0.0F;  // -normal . ray, with a ray of z = 1: turns a difference of depth into one across the surface
 };
 
-enum class Judgement { beyond, missing, front, behind, tilted, explained };
+// Those before `behind` say nothing about the surface.
+enum class Judgement { beyond, shadowed, missing, front, behind, tilted, explained };
 
 Judgement judge(const DrawnCell& cell, const Eigen::Vector3f& normal, const LabelledScan& scan,
                 const EvidenceOptions& options) {
   if (cell.cell < 0) return Judgement::beyond;
   const float depth = scan.depths[static_cast<std::size_t>(cell.cell)];
-  if (std::isnan(depth)) return Judgement::missing;
+  if (std::isnan(depth))
+    return may_be_in_shadow(cell.depth * cell.ray, normal, scan) ? Judgement::shadowed : Judgement::missing;
   const auto distance = static_cast<float>(options.distance);
   const float across = (depth - cell.depth) * cell.facing;
   if (across > distance) return Judgement::behind;
@@ -109,11 +114,12 @@ void look_at_cells(const CompiledModel& model, const Pose& T_sensor_model, const
       // A ray with z = 1 meets the surface under -normal . ray = height / depth: the cell lies on the triangle's plane.
       const float facing = drawn.height[static_cast<std::size_t>(triangle)] / drawn.depth[at];
       const int image_column = column + drawn.first_column;
-      const auto ray = static_cast<float>(scan.camera.ray(image_row, image_column).squaredNorm());
+      const Eigen::Vector3f direction = scan.camera.ray(image_row, image_column).cast<float>();
+      const float ray = direction.squaredNorm();
       if (facing * facing <= steepest * ray) continue;  // the sensor gives no data here
       const bool in_image = row_in_image && image_column >= 0 && image_column < scan.image.columns;
       const DrawnCell cell = {in_image ? scan.image.cell(image_row, image_column) : -1, triangle, drawn.depth[at],
-                              facing};
+                              direction, facing};
       const auto largest_step = [&] {
         const float cosine = std::max(facing / std::sqrt(ray), 0.05F);
         return distance + 3.0F * drawn.depth[at] / (static_cast<float>(scan.camera.fx) * cosine);
@@ -140,15 +146,16 @@ class Tally {
     if (!inner) return;
     evidence_.drawn += weight_;
     evidence_.beyond += judgement == Judgement::beyond ? weight_ : 0;
+    evidence_.shadowed += judgement == Judgement::shadowed ? weight_ : 0;
     evidence_.missing += judgement == Judgement::missing ? weight_ : 0;
     evidence_.front += judgement == Judgement::front ? weight_ : 0;
     evidence_.behind += judgement == Judgement::behind ? weight_ : 0;
     evidence_.tilted += judgement == Judgement::tilted ? weight_ : 0;
-    if (judgement == Judgement::beyond || judgement == Judgement::missing || judgement == Judgement::front) return;
-    Piece& piece = of_triangle_[static_cast<std::size_t>(triangle)];
-    piece.judged += weight_;
+    if (judgement < Judgement::behind) return;
+    Cells& cells = of_triangle_[static_cast<std::size_t>(triangle)];
+    cells.judged += weight_;
     if (!explained) return;
-    piece.explained += weight_;
+    cells.explained += weight_;
     evidence_.explained += weight_;
     if (region >= 0) {
       inner_of_region_[static_cast<std::size_t>(region)] += weight_;
@@ -159,32 +166,33 @@ class Tally {
 
   // triangle_faces: empty where unknown; then each triangle is a face.
   [[nodiscard]] PoseEvidence sum(const PoolVector<int>& free_cells, const std::vector<int>& triangle_faces) {
-    PoolVector<int> of_face(of_triangle_.size(), 0);
+    PoolVector<Cells> of_face(of_triangle_.size());
     for (std::size_t t = 0; t < of_triangle_.size(); ++t) {
-      const std::size_t face = triangle_faces.empty() ? t : static_cast<std::size_t>(triangle_faces[t]);
-      of_face[face] += of_triangle_[t].explained;
-      evidence_.largest = std::max(evidence_.largest, of_face[face]);
+      Cells& face = of_face[triangle_faces.empty() ? t : static_cast<std::size_t>(triangle_faces[t])];
+      face.judged += of_triangle_[t].judged;
+      face.explained += of_triangle_[t].explained;
+    }
+    for (const Cells& face : of_face) {
+      evidence_.largest = std::max(evidence_.largest, face.explained);
+      if (face.judged < kFewestCells) continue;
+      ++evidence_.faces;
+      evidence_.faces_found += 2 * face.explained >= face.judged ? 1 : 0;
     }
     for (std::size_t r = 0; r < free_cells.size(); ++r) {
       const double cells = std::max(1, free_cells[r]);
       evidence_.owned += inner_of_region_[r] * std::min(1.0, evidence_.explained_of_region[r] / cells);
     }
-    for (const Piece& piece : of_triangle_) {
-      if (piece.judged < kFewestCells) continue;
-      ++evidence_.pieces;
-      evidence_.pieces_found += 2 * piece.explained >= piece.judged ? 1 : 0;
-    }
     return std::move(evidence_);
   }
 
  private:
-  struct Piece {
+  struct Cells {
     int judged = 0;
     int explained = 0;
   };
   int weight_;
   PoseEvidence evidence_;
-  PoolVector<Piece> of_triangle_;
+  PoolVector<Cells> of_triangle_;
   PoolVector<int> inner_of_region_;
 };
 
@@ -211,7 +219,10 @@ LabelledScan label_scan(const RangeImage& image, const PinholeCamera& camera, co
                     PoolVector<int>(image.points.size(), 0),
                     PoolVector<bool>(image.points.size(), false),
                     {}};
-  for (std::size_t cell = 0; cell < image.points.size(); ++cell) scan.depths[cell] = image.points[cell].z();
+  for (std::size_t cell = 0; cell < image.points.size(); ++cell) {
+    scan.depths[cell] = image.points[cell].z();
+    if (scan.depths[cell] < scan.nearest) scan.nearest = scan.depths[cell];
+  }
   for (std::size_t r = 0; r < regions.size(); ++r) {
     for (const int cell : regions[r].region.cells)
       scan.labels[static_cast<std::size_t>(cell)] = static_cast<int>(r) + 1;
@@ -227,14 +238,14 @@ bool is_taken(const LabelledScan& scan, int region) {
 
 std::array<double, kEvidenceFeatureCount> evidence_features(const PoseEvidence& evidence) {
   const double drawn = std::max(1, evidence.drawn);
-  const int unseen = evidence.front + evidence.beyond;
+  const int unseen = evidence.front + evidence.beyond + evidence.shadowed;
   const double open = std::max(1, evidence.drawn - unseen);
   std::array<double, kEvidenceFeatureCount> features{};
   features[kOwnedShare] = evidence.owned / (kDoubt + evidence.explained + evidence.behind + evidence.tilted);
   features[kContradictedShare] = (evidence.behind + evidence.tilted) / open;
-  features[kMissingShare] = evidence.missing / open;
+  features[kMissing] = evidence.missing / (kFewMissing * open + evidence.missing);
   features[kHiddenShare] = unseen / drawn;
-  features[kFoundPieces] = static_cast<double>(evidence.pieces_found) / std::max(1, evidence.pieces);
+  features[kFoundFaces] = evidence.faces_found / (1.0 + evidence.faces);
   features[kAmount] = evidence.owned / (kMuch + evidence.owned);
   features[kOtherSurfaces] =
       evidence.explained > 0 ? 1.0 - static_cast<double>(evidence.largest) / evidence.explained : 0.0;

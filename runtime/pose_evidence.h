@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "common/camera.h"
 #include "common/compiled_model.h"
@@ -27,6 +28,7 @@ struct LabelledScan {
   PoolVector<int> labels;      // by cell: 0 = no region, i + 1 = regions[i]
   PoolVector<bool> taken;      // by cell: explained by another object already, so that it contradicts this one
   PoolVector<int> free_cells;  // by region: those that are not taken
+  float nearest = std::numeric_limits<float>::infinity();  // of the depths. Unit: mm.
 };
 
 // Nothing taken. The scan refers to all that is given.
@@ -53,17 +55,18 @@ struct EvidenceOptions {
 
 // Counts of the cells that would show the object, leaving out its outlines, where half a cell decides.
 struct PoseEvidence {
-  int drawn = 0;         // cells
-  int explained = 0;     // data on the surface, with its normal where a region tells it
-  int tilted = 0;        // data on the surface, but of a region with another normal
-  int behind = 0;        // data behind the surface: the sensor saw through it
-  int front = 0;         // data before the surface: hidden by something
-  int beyond = 0;        // beyond the image: unseen as well
-  int missing = 0;       // no data
-  int largest = 0;       // explained cells of the face, or triangle, with most of them
-  double owned = 0.0;    // explained cells, each counting the share of its region that the object explains
-  int pieces = 0;        // drawn triangles with at least 12 cells whose data say something: not missing, not hidden
-  int pieces_found = 0;  // of them, those of which at least half of these cells are explained
+  int drawn = 0;        // cells
+  int explained = 0;    // data on the surface, with its normal where a region tells it
+  int tilted = 0;       // data on the surface, but of a region with another normal
+  int behind = 0;       // data behind the surface: the sensor saw through it
+  int front = 0;        // data before the surface: hidden by something
+  int beyond = 0;       // beyond the image: unseen as well
+  int shadowed = 0;     // no data, where something may keep the projector's light away: unseen, too
+  int missing = 0;      // no data otherwise
+  int largest = 0;      // explained cells of the face, or triangle, with most of them
+  double owned = 0.0;   // explained cells, each counting the share of its region that the object explains
+  int faces = 0;        // or triangles, with at least 12 cells whose data say something: not missing, not unseen
+  int faces_found = 0;  // of them, those of which at least half of these cells are explained
   PoolVector<int> explained_of_region;  // cells, by region
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "tests/images.h"
@@ -43,12 +44,11 @@ CompiledModel plate() {
 }
 
 void expect_counts_add_up(const PoseEvidence& e) {
-  EXPECT_EQ(e.explained + e.tilted + e.behind + e.front + e.beyond + e.missing, e.drawn);
+  EXPECT_EQ(e.explained + e.tilted + e.behind + e.front + e.beyond + e.shadowed + e.missing, e.drawn);
   EXPECT_LE(e.owned, e.explained + 1e-9);
-  EXPECT_LE(e.pieces_found, e.pieces);
+  EXPECT_LE(e.faces_found, e.faces);
   EXPECT_LE(e.largest, e.explained);
-  for (const int k :
-       {kOwnedShare, kContradictedShare, kMissingShare, kHiddenShare, kFoundPieces, kAmount, kOtherSurfaces}) {
+  for (const int k : {kOwnedShare, kContradictedShare, kMissing, kHiddenShare, kFoundFaces, kAmount, kOtherSurfaces}) {
     const double share = evidence_features(e)[static_cast<std::size_t>(k)];
     EXPECT_TRUE(share >= 0.0 && share <= 1.0 + 1e-9) << k << ": " << share;
   }
@@ -67,7 +67,7 @@ TEST(PoseEvidence, a_stride_changes_little) {
     EXPECT_NEAR(some.drawn, all.drawn, 0.03 * all.drawn);
     EXPECT_NE(some.drawn, all.drawn);
     for (std::size_t k = 0; k < kEvidenceFeatureCount; ++k) {
-      if (k == kFoundPieces) continue;  // a small piece may be below the count that decides
+      if (k == kFoundFaces) continue;  // a small face may be below the count that decides
       EXPECT_NEAR(evidence_features(some)[k], evidence_features(all)[k], 0.05) << k;
     }
   }
@@ -91,8 +91,8 @@ TEST(PoseEvidence, the_true_pose_is_explained) {
   EXPECT_GT(e.drawn, 500);
   EXPECT_EQ(e.explained, e.drawn);
   EXPECT_GT(e.owned, 0.97 * e.explained);
-  EXPECT_EQ(e.pieces, 6);  // two triangles of each of three faces
-  EXPECT_EQ(e.pieces_found, 6);
+  EXPECT_EQ(e.faces, 3);
+  EXPECT_EQ(e.faces_found, 3);
   for (std::size_t r = 0; r < seen.regions.size(); ++r) {
     EXPECT_GT(e.explained_of_region[r], 0.95 * static_cast<double>(seen.regions[r].region.cells.size()));
   }
@@ -114,15 +114,15 @@ TEST(PoseEvidence, an_absent_object_is_missing_before_nothing) {
   const PoseEvidence e = box_evidence(Seen(RangeImage(240, 256)));
   EXPECT_GT(e.drawn, 500);
   EXPECT_EQ(e.missing, e.drawn);
-  EXPECT_EQ(e.pieces, 0);
+  EXPECT_EQ(e.faces, 0);
   expect_counts_add_up(e);
 }
 
 TEST(PoseEvidence, an_absent_object_is_seen_through_before_a_wall) {
   const PoseEvidence e = box_evidence(Seen(test::render({test::facing({0, 0, 1200}, 1000, 1000)}, PinholeCamera{})));
   EXPECT_EQ(e.behind, e.drawn);
-  EXPECT_EQ(e.pieces, 6);
-  EXPECT_EQ(e.pieces_found, 0);
+  EXPECT_EQ(e.faces, 3);
+  EXPECT_EQ(e.faces_found, 0);
   EXPECT_DOUBLE_EQ(evidence_features(e)[kContradictedShare], 1.0);
   expect_counts_add_up(e);
 }
@@ -137,8 +137,67 @@ TEST(PoseEvidence, what_hides_the_object_does_not_contradict_it) {
   EXPECT_EQ(hidden.drawn, alone.drawn);
   EXPECT_LT(hidden.explained, alone.explained);
   EXPECT_EQ(evidence_features(hidden)[kContradictedShare], 0.0);
-  EXPECT_EQ(hidden.pieces_found, hidden.pieces);
+  EXPECT_EQ(hidden.faces_found, hidden.faces);
   expect_counts_add_up(hidden);
+}
+
+// A plate without data, lit from beside the camera, and what else is seen.
+PoseEvidence dark_plate(const std::vector<test::Rectangle>& seen, const std::optional<Vector3d>& projector) {
+  Seen scan(test::render(seen, PinholeCamera{}));
+  scan.sensor.projector = projector;
+  return gather_evidence(plate(), {}, scan.labelled());
+}
+
+TEST(PoseEvidence, missing_data_in_what_may_be_a_shadow_are_unseen) {
+  const Vector3d beside(250, 0, 0);
+  const auto between = test::facing({55, 0, 700}, 40, 60);
+  const PoseEvidence dark = dark_plate({between}, beside);
+  EXPECT_GT(dark.drawn, 500);
+  EXPECT_GT(dark.shadowed, 0.4 * dark.drawn);
+  EXPECT_GT(evidence_features(dark)[kHiddenShare], 0.4);
+  expect_counts_add_up(dark);
+  EXPECT_EQ(dark_plate({between}, Vector3d(-250, 0, 0)).shadowed, 0);  // on the other side
+  EXPECT_EQ(dark_plate({between}, std::nullopt).missing, dark.drawn);
+}
+
+TEST(PoseEvidence, what_the_light_meets_beyond_the_image_may_cast_a_shadow) {
+  const PoseEvidence dark = dark_plate({test::facing({-60, 0, 500}, 20, 20)}, Vector3d(250, 0, 0));
+  EXPECT_EQ(dark.shadowed, dark.drawn);
+  // Inside the image the way is already nearer to the camera than anything seen.
+  EXPECT_EQ(dark_plate({test::facing({-80, 0, 850}, 20, 20)}, Vector3d(250, 0, 0)).missing, dark.drawn);
+}
+
+TEST(PoseEvidence, a_surface_turned_away_from_the_light_is_unseen) {
+  const PoseEvidence dark = dark_plate({test::facing({-80, 0, 850}, 20, 20)}, Vector3d(0, 0, 2000));
+  EXPECT_EQ(dark.shadowed, dark.drawn);
+}
+
+TEST(PoseEvidence, few_missing_cells_say_much) {
+  PoseEvidence e;
+  e.drawn = 1000;
+  double last = 0.0;
+  for (const int missing : {0, 100, 1000}) {
+    e.missing = missing;
+    const double feature = evidence_features(e)[kMissing];
+    EXPECT_TRUE(missing == 0 ? feature == 0.0 : feature > last);
+    EXPECT_LT(feature, 1.0);
+    last = feature;
+  }
+  e.missing = 100;
+  EXPECT_NEAR(evidence_features(e)[kMissing], 0.5, 1e-9);
+}
+
+TEST(PoseEvidence, more_faces_found_say_more_and_faces_not_found_less) {
+  const auto feature = [](int found, int faces) {
+    PoseEvidence e;
+    e.faces = faces;
+    e.faces_found = found;
+    return evidence_features(e)[kFoundFaces];
+  };
+  EXPECT_LT(feature(1, 1), feature(2, 2));
+  EXPECT_LT(feature(2, 2), feature(5, 5));
+  EXPECT_LT(feature(2, 3), feature(2, 2));
+  EXPECT_EQ(feature(0, 0), 0.0);
 }
 
 TEST(PoseEvidence, regions_that_run_on_beyond_a_face_are_not_owned) {
@@ -172,7 +231,7 @@ TEST(PoseEvidence, what_another_object_explains_contradicts) {
   EXPECT_EQ(taken.drawn, free.drawn);
   EXPECT_GT(taken.tilted, 0.9 * taken.drawn);
   EXPECT_EQ(std::accumulate(taken.explained_of_region.begin(), taken.explained_of_region.end(), 0), 0);
-  EXPECT_EQ(taken.pieces_found, 0);
+  EXPECT_EQ(taken.faces_found, 0);
   EXPECT_GT(some.tilted, free.tilted);
   EXPECT_LT(some.tilted, taken.tilted);
   expect_counts_add_up(some);
@@ -211,7 +270,7 @@ TEST(PoseEvidence, counts_what_lies_beyond_the_image_as_unseen) {
   EXPECT_NEAR(e.beyond, 0.5 * e.drawn, 0.04 * e.drawn);
   EXPECT_EQ(e.explained + e.beyond, e.drawn);
   EXPECT_NEAR(evidence_features(e)[kHiddenShare], 0.5, 0.04);
-  EXPECT_NEAR(evidence_features(e)[kMissingShare], 0.0, 1e-9);
+  EXPECT_NEAR(evidence_features(e)[kMissing], 0.0, 1e-9);
   expect_counts_add_up(e);
   const PoseEvidence whole = gather_evidence(plate(), {}, seen.labelled());
   EXPECT_EQ(whole.beyond, 0);
@@ -402,8 +461,8 @@ TEST(ProbabilityRight, rises_with_each_weight_whose_evidence_is_there) {
   e.front = e.missing = 20;
   e.owned = 30.0;
   e.largest = 25;
-  e.pieces = 4;
-  e.pieces_found = 3;
+  e.faces = 4;
+  e.faces_found = 3;
   for (std::size_t k = 0; k < kEvidenceFeatureCount; ++k) {
     double last = 0.0;
     for (const double weight : {-30.0, -1.0, 0.0, 2.0, 30.0}) {
