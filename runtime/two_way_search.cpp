@@ -35,7 +35,7 @@ struct AcceptedPose {
 
 constexpr double kNearSymmetricQuality = 0.8;        // of the pose found, for a near-symmetric one to be worth refining
 constexpr int kMostDoublings = 12;                   // of a stretch of hypotheses
-constexpr std::chrono::microseconds kDecision{400};  // about what it takes to decide on a candidate, and to report it
+constexpr std::chrono::microseconds kDecision{800};  // about what it takes to decide on a candidate, and to report it
 constexpr int kRoughStride = 2;                      // for a look at whether a start is worth refining
 constexpr double kRivalQuality = 0.5;  // of the start of the pose found, for a rival's to be worth settling
 constexpr double kRivalView = 0.9;     // of the cells a rival's start must show alike to be worth refining
@@ -94,10 +94,10 @@ class TwoWaySearch {
     std::sort(best.begin(), best.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
     return best;
   }
-  // In time for what there is to decide yet.
+  // In time to decide on what waits, and on what may be in hand.
   [[nodiscard]] bool out_of_limits() const {
     if (!deadline_) return limits_reached(options_, deadline_, result_);
-    return limits_reached(options_, *deadline_ - static_cast<int>(candidates_.size()) * kDecision, result_);
+    return limits_reached(options_, *deadline_ - (1 + static_cast<int>(candidates_.size())) * kDecision, result_);
   }
   [[nodiscard]] Stop stop() const {
     return [this] { return out_of_limits(); };
@@ -369,11 +369,11 @@ class TwoWaySearch {
   EvidenceOptions fine_;
   PoseChecker checker_;
   PoseChecker settling_;
+  PoolVector<Candidate> candidates_;  // before search_, which asks out_of_limits as it is made
   StartSearchCounts counts_;
   StartSearch search_;
   PoolVector<bool> tried_;  // by start
   int order_ = 0;           // starts taken up so far
-  PoolVector<Candidate> candidates_;
   PoolVector<AcceptedPose> accepted_;
   PoolMap<PoolVector<int>, int> tries_;  // by regions and model
   Stopwatch watch_;

@@ -314,7 +314,8 @@ TEST(Segmentation, can_be_stopped_between_its_steps) {
   for (int last = 1; last <= asked; ++last) {
     int times = 0;
     EXPECT_TRUE(segment(image, options, [&times, last] { return ++times >= last; }).empty()) << last;
-    EXPECT_EQ(times, last);
+    EXPECT_GE(times, last);
+    EXPECT_LE(times, last + 2);  // asked again behind steps that have stopped within
   }
   EXPECT_TRUE(extract_regions(image, PinholeCamera{}, options, [] { return true; }).empty());
 }
