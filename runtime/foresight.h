@@ -123,7 +123,7 @@ struct RecognizeOptions {
   int most_detections = 0;           // stop after this many, 0 = no limit. Limit: >= 0.
   int most_verifications = 0;        // stop after this many, 0 = no limit. Limit: >= 0.
   // What a Recognizer takes from the heap when it is made. Scans that need more take it then, and the recognizer keeps
-  // it: Statistics::pool_bytes says how much one needed. 32 MiB are enough for scans of 640 x 480. Unit: bytes.
+  // it: Statistics::pool_bytes says how much one needed. Unit: bytes.
   std::size_t reserved_memory = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "common/errors.h"
 #include "compiler/database_writer.h"
 #include "runtime/recognize.h"
+#include "tests/images.h"
 #include "tests/runtime/compiled_objects.h"
 
 namespace foresight {
@@ -97,6 +98,49 @@ TEST(Recognizer, stops_at_its_deadline) {
   EXPECT_FALSE(late.complete);
   EXPECT_TRUE(late.detections.empty());
   EXPECT_TRUE(recognizer.recognize(client.view(), std::chrono::hours(1)).complete);
+}
+
+TEST(Recognizer, gives_the_same_in_a_result_that_held_another) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  const RecognitionResult fresh = recognizer.recognize(client.view());
+  ASSERT_EQ(fresh.detections.size(), 2U);
+  const RangeImage wall = test::render({test::facing({0, 0, 900}, 1000, 1000)}, PinholeCamera{});
+  const RangeImageView nothing{wall.rows, wall.columns, wall.points.front().data()};
+  RecognitionResult result;
+  for (int turn = 0; turn < 3; ++turn) {
+    recognizer.recognize(client.view(), std::nullopt, result);
+    expect_same(result, fresh);
+    EXPECT_TRUE(result.complete);
+    recognizer.recognize(nothing, std::nullopt, result);
+    EXPECT_TRUE(result.detections.empty());
+    recognizer.recognize(client.view(), std::chrono::milliseconds(0), result);
+    EXPECT_FALSE(result.complete);
+  }
+}
+
+TEST(Recognizer, keeps_nothing_in_a_result_that_it_could_not_fill) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  RecognitionResult result = recognizer.recognize(client.view());
+  ASSERT_FALSE(result.detections.empty());
+  EXPECT_THROW(recognizer.recognize({}, std::nullopt, result), InputError);
+  EXPECT_TRUE(result.detections.empty());
+  recognizer.recognize(client.view(), std::nullopt, result);  // and goes on
+  EXPECT_EQ(result.detections.size(), 2U);
+}
+
+TEST(Recognizer, needs_the_same_memory_for_the_same_scan_every_time) {
+  const Client client;
+  const Recognizer recognizer(client.file);
+  const long needed = recognizer.recognize(client.view()).statistics.pool_bytes;
+  EXPECT_GT(needed, 1 << 20);
+  EXPECT_EQ(recognizer.recognize(client.view()).statistics.pool_bytes, needed);
+  RecognizeOptions reserving;
+  reserving.reserved_memory = static_cast<std::size_t>(needed);
+  const RecognitionResult result = Recognizer(client.file, reserving).recognize(client.view());
+  EXPECT_LE(result.statistics.pool_bytes, needed);
+  expect_same(result, recognizer.recognize(client.view()));
 }
 
 TEST(Recognizer, gives_identical_results_to_several_threads) {
