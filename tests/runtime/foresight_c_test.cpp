@@ -369,6 +369,44 @@ TEST(CInterface, structs_grow_at_their_end_only) {
   expect_refused(foresight_recognizer_create(database.get(), &options.known, &recognizer), FORESIGHT_USAGE, "too old");
 }
 
+// Sizes of ABI version 1 before reserved_memory and pool_bytes.
+TEST(CInterface, serves_programs_that_know_its_first_structs) {
+  constexpr std::uint32_t kOptions = 24;
+  constexpr std::uint32_t kStatistics = 72;
+  const Client client;
+  const auto database = loaded(client.file);
+  foresight_options options = FORESIGHT_OPTIONS_DEFAULT;
+  options.size = kOptions;
+  options.reserved_memory = ~std::uint64_t{0};  // beyond such a program's struct: not read
+  const auto recognizer = created(database, &options);
+  const auto result = empty_result();
+  ASSERT_EQ(foresight_recognize(recognizer.get(), &client.image, FORESIGHT_NO_DEADLINE, result.get()), FORESIGHT_DONE);
+  foresight_statistics counts{};
+  counts.size = kStatistics;
+  counts.pool_bytes = 7;
+  EXPECT_EQ(foresight_result_statistics(result.get(), &counts), FORESIGHT_DONE);
+  EXPECT_GT(counts.pose_checks, 0);
+  EXPECT_EQ(counts.pool_bytes, 7);  // not written
+  foresight_recognizer* none = nullptr;
+  options.size = kOptions - 1;
+  expect_refused(foresight_recognizer_create(database.get(), &options, &none), FORESIGHT_USAGE, "its size is");
+}
+
+TEST(CInterface, reserves_memory_and_says_how_much_was_used) {
+  const Client client;
+  const auto database = loaded(client.file);
+  foresight_options options = FORESIGHT_OPTIONS_DEFAULT;
+  options.reserved_memory = 16U << 20;
+  const auto recognizer = created(database, &options);
+  const auto result = empty_result();
+  ASSERT_EQ(foresight_recognize(recognizer.get(), &client.image, FORESIGHT_NO_DEADLINE, result.get()), FORESIGHT_DONE);
+  foresight_statistics counts{};
+  counts.size = sizeof counts;
+  EXPECT_EQ(foresight_result_statistics(result.get(), &counts), FORESIGHT_DONE);
+  EXPECT_GT(counts.pool_bytes, 1 << 20);
+  EXPECT_LT(counts.pool_bytes, 16 << 20);
+}
+
 // What programs compiled with this header rely on. Never change a line; a new field gets a line of its own.
 TEST(CInterface, structs_are_laid_out_as_in_abi_version_1) {
   static_assert(FORESIGHT_ABI_VERSION == 1);
