@@ -5,6 +5,12 @@
 
 namespace foresight {
 
+namespace {
+
+constexpr std::size_t kMostWaiting = 131072;  // nodes; beyond, the worse half goes
+
+}  // namespace
+
 RegionRelations::RegionRelations(const PoolVector<DescribedRegion>& regions)
     : regions_(regions), known_(regions.size() * (regions.size() + 1) / 2) {}
 
@@ -32,7 +38,9 @@ HypothesisQueue::HypothesisQueue(const PoolVector<RegionMatches>& matches, const
       relations_(relations),
       least_rating_(least_rating),
       most_(static_cast<std::size_t>(most)),
-      runs_(matches.size()) {
+      runs_(matches.size()),
+      most_nodes_(most == std::numeric_limits<int>::max() ? std::numeric_limits<std::size_t>::max()
+                                                          : std::max<std::size_t>(kMostWaiting, 4 * most_)) {
   PoolVector<double> best(matches.size(), 0.0);
   for (std::size_t r = 0; r < matches.size(); ++r) {
     for (std::size_t i = 0; i < matches[r].size(); ++i) {
@@ -50,9 +58,19 @@ HypothesisQueue::HypothesisQueue(const PoolVector<RegionMatches>& matches, const
     if (matches[b].empty()) continue;
     for (std::size_t a = 0; a < b; ++a) {
       if (matches[a].empty()) continue;
-      nodes_.push({best[a] + best[b] + rater.highest_pair_rating(), static_cast<int>(a), static_cast<int>(b)});
+      push({best[a] + best[b] + rater.highest_pair_rating(), static_cast<int>(a), static_cast<int>(b)});
     }
   }
+}
+
+void HypothesisQueue::push(const Node& node) {
+  nodes_.push_back(node);
+  std::push_heap(nodes_.begin(), nodes_.end());
+  if (nodes_.size() <= most_nodes_) return;
+  const auto half = nodes_.begin() + static_cast<std::ptrdiff_t>(nodes_.size() / 2);
+  std::nth_element(nodes_.begin(), half, nodes_.end(), [](const Node& x, const Node& y) { return y < x; });
+  nodes_.erase(half, nodes_.end());
+  std::make_heap(nodes_.begin(), nodes_.end());
 }
 
 void HypothesisQueue::split_by_model(const Node& node) {
@@ -60,7 +78,7 @@ void HypothesisQueue::split_by_model(const Node& node) {
   const PoolVector<Run>& of_b = runs_[static_cast<std::size_t>(node.b)];
   for (auto a = of_a.begin(), b = of_b.begin(); a != of_a.end() && b != of_b.end();) {
     if (a->model == b->model) {
-      nodes_.push({a->best + b->best + rater_.highest_pair_rating(), node.a, node.b, a->model});
+      push({a->best + b->best + rater_.highest_pair_rating(), node.a, node.b, a->model});
       ++a;
       ++b;
     } else if (a->model < b->model) {
@@ -112,15 +130,16 @@ void HypothesisQueue::split_by_match(const Node& node) {
                      [](const Node& x, const Node& y) { return y < x; });
     pairs_.resize(most_);
   }
-  for (const Node& pair : pairs_) nodes_.push(pair);
+  for (const Node& pair : pairs_) push(pair);
 }
 
 std::optional<MatchPair> HypothesisQueue::next(const std::function<bool(int)>& is_free, const Stop& stop) {
   constexpr int kAtOnce = 16;  // nodes between two questions whether to stop
-  for (int taken = 1; !nodes_.empty() && nodes_.top().bound >= least_rating_; ++taken) {
+  for (int taken = 1; !nodes_.empty() && nodes_.front().bound >= least_rating_; ++taken) {
     if (taken % kAtOnce == 0 && stop && stop()) return std::nullopt;
-    const Node node = nodes_.top();
-    nodes_.pop();
+    std::pop_heap(nodes_.begin(), nodes_.end());
+    const Node node = nodes_.back();
+    nodes_.pop_back();
     if (!is_free(node.a) || !is_free(node.b)) continue;
     if (node.match_a >= 0) return pair_of(node);
     if (node.model >= 0) {

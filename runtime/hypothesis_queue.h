@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <queue>
 
 #include "common/memory_pool.h"
 #include "runtime/rated_matches.h"
@@ -35,9 +34,9 @@ class RegionRelations {
 // pair.
 class HypothesisQueue {
  public:
-  // All must outlive the queue. least_rating: of the pairs it gives. most: so many pairs are asked for at most; of two
-  // regions and a model, no more are kept, so that an object of hundreds of like faces does not fill the memory.
-  // Limit: >= 0.
+  // All must outlive the queue. least_rating: of the pairs it gives. most: so many pairs are asked for at most. Of two
+  // regions and a model no more are kept, and of all that wait the best 65536 for sure: an object of hundreds of like
+  // faces would else fill the memory with pairs that nobody comes to. Limit: >= 0.
   HypothesisQueue(const PoolVector<RegionMatches>& matches, const PoolVector<DescribedRegion>& regions,
                   const Database& database, const MatchRater& rater, RegionRelations& relations, double least_rating,
                   int most = std::numeric_limits<int>::max());
@@ -67,6 +66,7 @@ class HypothesisQueue {
   };
   void split_by_model(const Node& node);
   void split_by_match(const Node& node);
+  void push(const Node& node);
   // Calls visit for each pair of matches of the node's regions and model.
   template <typename Visit>
   void visit_matches(const Node& node, const Visit& visit) const;
@@ -80,7 +80,8 @@ class HypothesisQueue {
   double least_rating_;
   std::size_t most_;
   PoolVector<PoolVector<Run>> runs_;  // by region, models ascending
-  std::priority_queue<Node, PoolVector<Node>> nodes_;
+  PoolVector<Node> nodes_;            // a heap, the highest bound first
+  std::size_t most_nodes_ = 0;
   PoolVector<Node> pairs_;  // scratch: of the node taken apart
 };
 
